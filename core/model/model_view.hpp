@@ -1,0 +1,138 @@
+// The one cached model: a flat, position-independent image that the device maps read-only, and a checked view
+// of it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/geometry/rigid_transform.hpp"
+#include "core/limits.hpp"
+
+namespace pliant {
+
+/// SHOT: 32 volumes (8 azimuth, 2 elevation, 2 radial) of 11 bins of the normals' cosine.
+inline constexpr int kDescriptorSize = 352;
+
+/// A unit normal in Q14 (16384 = 1), padded to eight bytes.
+struct Normal16 {
+  std::int16_t x = 0, y = 0, z = 0, pad = 0;
+};
+
+/// Eight-bit SHOT descriptor, each component >= 0, of Euclidean norm ~ 127·(1 ± quantisation).
+struct Descriptor {
+  std::array<std::int8_t, kDescriptorSize> bins;
+};
+
+/// Axes of a keypoint's local reference frame in the model frame, rows x, y, z, Q14.
+struct LocalFrame {
+  std::array<std::int16_t, 9> axes;
+};
+
+/// First bytes of a model image. Little-endian; offsets from the image's first byte, multiples of 64.
+/// The checksum is FNV-1a (64 bits, over 64-bit little-endian words) of everything behind the header.
+struct ModelHeader {
+  static constexpr std::array<char, 8> kMagic = {'P', 'L', 'I', 'A', 'N', 'T', 'M', '\n'};
+  static constexpr std::uint32_t kByteOrder = 0x01020304;
+  static constexpr std::uint32_t kVersion = 1;
+  enum Flags : std::uint32_t {
+    kCharacterisable = 1,  ///< its shape tells where it is; not so for a sphere or a plane
+    kClosedSurface = 2,    ///< built from a mesh without a border
+    kFrontOnly = 4         ///< the back is unknown
+  };
+  /// Why a shape cannot be localised.
+  enum class Ambiguity : std::uint32_t {
+    none = 0,
+    sphere = 1,
+    plane = 2,
+    rotation = 3,
+    translation = 4,
+    featureless = 5
+  };
+
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t byte_order = kByteOrder;
+  std::uint32_t version = kVersion;
+  std::uint64_t bytes = 0;  ///< of the whole image
+  std::uint64_t checksum = 0;
+  std::uint32_t flags = 0;
+  std::uint32_t ambiguity = 0;  ///< Ambiguity
+  std::uint32_t point_count = 0;
+  std::uint32_t keypoint_count = 0;  ///< the first points are the keypoints
+  double spacing = 0;                ///< mean distance of a point to its nearest other, metres
+  double support_radius = 0;         ///< radius of the descriptors, metres
+  double radius = 0;                 ///< of the sphere around `centre` that holds all points, metres
+  double centre[3] = {0, 0, 0};      ///< of the bounding box, metres, model frame
+  double lowest[3] = {0, 0, 0};      ///< bounding box, metres, model frame
+  double highest[3] = {0, 0, 0};
+  double characterisability = 0;         ///< [0, 1]; 0: a motion exists that the shape does not notice
+  std::uint64_t positions_offset = 0;    ///< Point3f[point_count], model frame as in the input, metres
+  std::uint64_t normals_offset = 0;      ///< Normal16[point_count], outward
+  std::uint64_t neighbours_offset = 0;   ///< uint16[point_count][kNeighbours], nearest first, 0xFFFF none
+  std::uint64_t descriptors_offset = 0;  ///< Descriptor[keypoint_count]
+  std::uint64_t frames_offset = 0;       ///< LocalFrame[keypoint_count]
+  std::uint64_t reserved[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+};
+static_assert(sizeof(ModelHeader) == 256 && sizeof(ModelHeader) % 64 == 0);
+static_assert(sizeof(Descriptor) == kDescriptorSize && sizeof(LocalFrame) == 18);
+
+inline constexpr std::uint16_t kNoNeighbour = 0xFFFF;
+
+/// Why an image was refused.
+enum class ModelFault : std::uint8_t {
+  none,
+  too_short,
+  not_a_model,
+  foreign_byte_order,
+  newer_version,
+  older_version,
+  truncated,
+  corrupt,
+  over_limit
+};
+/// One line for people: what is wrong and the mend.
+[[nodiscard]] const char* describe(ModelFault fault) noexcept;
+
+/// A checked view of a model image. Points stand in farthest-point order: any prefix is a uniform sampling.
+class ModelView {
+ public:
+  ModelView() noexcept = default;
+  /// Checks `image` (8-byte aligned) in full: header, checksum, every offset and index, finite numbers, unit
+  /// normals. On success `view` looks into `image`, which must outlive it.
+  [[nodiscard]] static ModelFault open(std::span<const std::byte> image, ModelView& view) noexcept;
+
+  [[nodiscard]] bool empty() const noexcept { return header_ == nullptr; }
+  [[nodiscard]] const ModelHeader& header() const noexcept { return *header_; }
+  [[nodiscard]] std::size_t size() const noexcept { return header_->point_count; }
+  [[nodiscard]] std::size_t keypoint_count() const noexcept { return header_->keypoint_count; }
+  [[nodiscard]] std::span<const Point3f> positions() const noexcept { return positions_; }
+  [[nodiscard]] std::span<const Normal16> normals() const noexcept { return normals_; }
+  /// kNeighbours entries for point i.
+  [[nodiscard]] std::span<const std::uint16_t> neighbours(std::size_t i) const noexcept {
+    return neighbours_.subspan(i * limits::kNeighbours, limits::kNeighbours);
+  }
+  [[nodiscard]] std::span<const Descriptor> descriptors() const noexcept { return descriptors_; }
+  [[nodiscard]] std::span<const LocalFrame> frames() const noexcept { return frames_; }
+  [[nodiscard]] double spacing() const noexcept { return header_->spacing; }
+  [[nodiscard]] Vector3 centre() const noexcept {
+    return {header_->centre[0], header_->centre[1], header_->centre[2]};
+  }
+  [[nodiscard]] double radius() const noexcept { return header_->radius; }
+  [[nodiscard]] bool characterisable() const noexcept {
+    return (header_->flags & ModelHeader::kCharacterisable) != 0;
+  }
+
+ private:
+  const ModelHeader* header_ = nullptr;
+  std::span<const Point3f> positions_;
+  std::span<const Normal16> normals_;
+  std::span<const std::uint16_t> neighbours_;
+  std::span<const Descriptor> descriptors_;
+  std::span<const LocalFrame> frames_;
+};
+
+/// The checksum of ModelHeader over `data`, whose size must be a multiple of eight.
+[[nodiscard]] std::uint64_t model_checksum(std::span<const std::byte> data) noexcept;
+
+}  // namespace pliant
