@@ -1,0 +1,71 @@
+#include "firmware-app/config/config.hpp"
+
+#include <filesystem>
+#include <vector>
+
+#include "core/limits.hpp"
+#include "firmware-app/config/settings_table.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// Every key of pliant.toml.
+std::vector<Setting> config_settings(Config& c) {
+  return {
+      {"", "model", &c.model, 0, 4096, "", "the model file to track"},
+      {"", "source", &c.source, 0, 4096, "", "where depth frames come from"},
+      {"lcm", "url", &c.lcm.url, 1, 1024, "", "LCM network, or \"none\""},
+      {"lcm", "prefix", &c.lcm.prefix, 1, 32, "", "first word of the channels' names"},
+      {"lcm", "publish_depth", &c.lcm.publish_depth, 0, 1, "", "publish the depth frames too"},
+      {"track", "budget_ms", &c.track.budget_ms, 1, 1000, "ms", "time that one frame may take"},
+      {"track", "max_regions", &c.track.max_regions, 1, limits::kMaxRegions, "",
+       "rigid parts followed at once"},
+      {"track", "material", &c.track.material, 0, 1, "", "how easily the object stretches, 0 stiff, 1 soft"},
+      {"sensor", "description", &c.sensor.description, 0, 4096, "", "file that describes the sensor"},
+      {"run", "threads", &c.run.threads, 1, 64, "", "threads that share the work of one frame"},
+      {"run", "priority", &c.run.priority, 0, 99, "", "real-time priority of tracking, 0 for none"},
+      {"run", "affinity", &c.run.affinity, 0, 1023, "", "processors that tracking may use, [] for all"},
+      {"view", "bind", &c.view.bind, 1, 255, "", "address that the web viewer listens on"},
+      {"view", "port", &c.view.port, 1, 65535, "", "port that the web viewer listens on"},
+  };
+}
+
+/// A path as written in a file in `folder`, seen from the working folder.
+void make_relative_to(const std::filesystem::path& folder, std::string& path) {
+  if (!path.empty() && std::filesystem::path(path).is_relative()) path = (folder / path).string();
+}
+
+}  // namespace
+
+Outcome parse_config(std::string_view text, std::string_view name, Config& config) {
+  Config candidate = config;
+  const std::vector<Setting> settings = config_settings(candidate);
+  if (Outcome parsed = parse_settings(text, name, settings); !parsed) return parsed;
+  config = candidate;
+  return success();
+}
+
+Result<Config> read_config(const std::string& path) {
+  const Result<std::string> text = read_text_file(path, "config file");
+  if (!text) return text.error();
+  Config config;
+  if (Outcome parsed = parse_config(*text, path, config); !parsed) return parsed.error();
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  make_relative_to(folder, config.model);
+  make_relative_to(folder, config.sensor.description);
+  constexpr std::string_view kRecording = "recording:";
+  if (config.source.starts_with(kRecording)) {
+    std::string directory = config.source.substr(kRecording.size());
+    make_relative_to(folder, directory);
+    config.source = std::string(kRecording) + directory;
+  }
+  return config;
+}
+
+std::string describe_config(const Config& config) {
+  Config copy = config;
+  return describe_settings(config_settings(copy));
+}
+
+}  // namespace pliant

@@ -1,0 +1,51 @@
+// The program's configuration. A member's name is its key in the TOML file.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/common/result.hpp"
+
+namespace pliant {
+
+/// Defaults, units and ranges stand once, in the table in config.cpp, and are shown by `pliant check`.
+struct Config {
+  std::string model;
+  std::string source;
+  struct Lcm {
+    std::string url = "udpm://239.255.76.67:7667?ttl=0";
+    std::string prefix = "PLIANT";
+    bool publish_depth = false;
+  } lcm;
+  struct Track {
+    double budget_ms = 33;
+    int max_regions = 8;
+    double material = 0.5;
+  } track;
+  struct Sensor {
+    std::string description;
+  } sensor;
+  struct Run {
+    int threads = 1;
+    int priority = 0;
+    std::vector<int> affinity;
+  } run;
+  struct View {
+    std::string bind = "127.0.0.1";
+    int port = 8080;
+  } view;
+};
+
+/// Reads TOML text into `config`; keys that are not there keep what `config` holds. An error names `name`,
+/// line and column and says what is allowed.
+[[nodiscard]] Outcome parse_config(std::string_view text, std::string_view name, Config& config);
+
+/// Reads a file. Paths in it (model, sensor description) are taken relative to its folder.
+[[nodiscard]] Result<Config> read_config(const std::string& path);
+
+/// One line a key: name, value, range and meaning.
+[[nodiscard]] std::string describe_config(const Config& config);
+
+}  // namespace pliant

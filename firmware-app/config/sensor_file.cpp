@@ -1,0 +1,59 @@
+#include "firmware-app/config/sensor_file.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "core/limits.hpp"
+#include "firmware-app/config/settings_table.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// Every key of a sensor description.
+std::vector<Setting> sensor_settings(SensorFile& s) {
+  return {
+      {"", "name", &s.name, 0, 200, "", "the sensor's name"},
+      {"mode", "width", &s.mode.width, limits::kMinFrameWidth, limits::kMaxFrameWidth, "pixels",
+       "of a frame"},
+      {"mode", "height", &s.mode.height, limits::kMinFrameHeight, limits::kMaxFrameHeight, "pixels",
+       "of a frame"},
+      {"mode", "rate", &s.mode.rate, 1, 240, "frames per second", "of the stream"},
+      {"camera", "fx", &s.camera.fx, 10, 10000, "pixels", "focal length across"},
+      {"camera", "fy", &s.camera.fy, 10, 10000, "pixels", "focal length down"},
+      {"camera", "cx", &s.camera.cx, -2000, 4000, "pixels", "principal point across"},
+      {"camera", "cy", &s.camera.cy, -2000, 4000, "pixels", "principal point down"},
+      {"camera", "depth_scale", &s.camera.depth_scale, 1, 100000, "raw units per metre", "of a reading"},
+      {"noise", "noise_floor", &s.noise.noise_floor, 0.0001, 0.05, "m", "deviation at 0.4 m"},
+      {"noise", "noise_growth", &s.noise.noise_growth, 0, 0.1, "1/m", "its growth with (depth - 0.4 m)^2"},
+      {"noise", "near_limit", &s.noise.near_limit, 0.05, 4, "m", "nearest reading used"},
+      {"noise", "far_limit", &s.noise.far_limit, 0.2, limits::kMaxDepth, "m", "farthest reading used"},
+  };
+}
+
+}  // namespace
+
+Outcome parse_sensor(std::string_view text, std::string_view name, SensorFile& sensor) {
+  SensorFile candidate = sensor;
+  const std::vector<Setting> settings = sensor_settings(candidate);
+  if (Outcome parsed = parse_settings(text, name, settings); !parsed) return parsed;
+  if (candidate.noise.near_limit >= candidate.noise.far_limit)
+    return Error{ErrorKind::bad_input,
+                 fmt::format("{}: noise.near_limit must be below noise.far_limit ({:g} and {:g} m)", name,
+                             candidate.noise.near_limit, candidate.noise.far_limit)};
+  if (const char* fault = intrinsics_fault(candidate.intrinsics()); fault != nullptr)
+    return Error{ErrorKind::bad_input, fmt::format("{}: camera: {}", name, fault)};
+  sensor = candidate;
+  return success();
+}
+
+Result<SensorFile> read_sensor(const std::string& path) {
+  const Result<std::string> text = read_text_file(path, "sensor description");
+  if (!text) return text.error();
+  SensorFile sensor;
+  if (Outcome parsed = parse_sensor(*text, path, sensor); !parsed) return parsed.error();
+  return sensor;
+}
+
+}  // namespace pliant

@@ -1,0 +1,52 @@
+// Tables of settings: every key of a TOML file declared once, with its range, unit and meaning.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "drivers/common/result.hpp"
+
+namespace pliant {
+
+/// Where a setting's value lives, in type-erased form; the constructors keep the types right.
+using SettingTarget = std::variant<std::string*, bool*, int*, double*, std::vector<int>*>;
+
+/// One key. `low` and `high` bound numbers (each one, in a list) and the length of texts.
+struct Setting {
+  std::string_view table;  ///< "" for the top of the file
+  std::string_view key;
+  SettingTarget target;
+  double low = 0;
+  double high = 0;
+  std::string_view unit;  ///< "" where there is none
+  std::string_view meaning;
+};
+
+/// Longest text that is read, bytes: a config is written by hand.
+inline constexpr std::size_t kMaxSettingsText = std::size_t{1} << 20;
+
+/// Reads TOML `text` into the settings' targets. On error (file `name`, line, column, what is allowed)
+/// targets may have been written in part: read into a copy.
+[[nodiscard]] Outcome parse_settings(std::string_view text, std::string_view name,
+                                     std::span<const Setting> settings);
+
+/// What a key may hold, in words: "a number from 0 to 1", "true or false".
+[[nodiscard]] std::string allowed_values(const Setting& setting);
+
+/// The setting's present value as TOML.
+[[nodiscard]] std::string setting_value(const Setting& setting);
+
+/// One line a setting: key, value, allowed values, meaning.
+[[nodiscard]] std::string describe_settings(std::span<const Setting> settings);
+
+/// Number of single-character insertions, deletions, substitutions and swaps of neighbours that turn `a` into
+/// `b`.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The whole file as text, at most kMaxSettingsText bytes.
+[[nodiscard]] Result<std::string> read_text_file(const std::string& path, std::string_view what);
+
+}  // namespace pliant
