@@ -90,7 +90,8 @@ bool ShotDescriber::describe(const OrientedPoints& points, const PointGrid& grid
     behind += along < 0;
   }
   if (behind > ahead) x = -x;
-  const Vector3 y = z.cross(x);
+  const Vector3 y(z.y() * x.z() - z.z() * x.y(), z.z() * x.x() - z.x() * x.z(),
+                  z.x() * x.y() - z.y() * x.x());
   for (int i = 0; i < 3; ++i) {
     frame.axes[static_cast<std::size_t>(i)] = to_q14(x(i));
     frame.axes[static_cast<std::size_t>(3 + i)] = to_q14(y(i));

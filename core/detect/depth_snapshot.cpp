@@ -1,0 +1,125 @@
+#include "core/detect/depth_snapshot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+
+namespace {
+
+constexpr double kTan75 = 3.732;
+
+int reduction(const Intrinsics& camera) noexcept {
+  int factor = 1;
+  while ((camera.width / factor) * (camera.height / factor) > DepthSnapshot::kMostPixels) ++factor;
+  return factor;
+}
+
+}  // namespace
+
+Intrinsics reduced_intrinsics(const Intrinsics& camera) noexcept {
+  const int n = reduction(camera);
+  Intrinsics reduced = camera;
+  reduced.width = camera.width / n;
+  reduced.height = camera.height / n;
+  reduced.fx = camera.fx / n;
+  reduced.fy = camera.fy / n;
+  // Reduced pixel u stands at full pixel n·u + n/2.
+  reduced.cx = (camera.cx - n / 2) / n;
+  reduced.cy = (camera.cy - n / 2) / n;
+  return reduced;
+}
+
+void DepthSnapshot::lay_out(Workspace& workspace, const Intrinsics& camera) noexcept {
+  camera_ = reduced_intrinsics(camera);
+  depth_ = workspace.take<std::uint16_t>(static_cast<std::size_t>(width() * height()));
+  normals_ = workspace.take<Normal16>(static_cast<std::size_t>(lattice_width() * lattice_height()));
+}
+
+void DepthSnapshot::start(const Intrinsics& camera, const SensorDescription& sensor) noexcept {
+  factor_ = reduction(camera);
+  camera_ = reduced_intrinsics(camera);
+  sensor_ = sensor;
+  fx_ = static_cast<float>(camera_.fx);
+  fy_ = static_cast<float>(camera_.fy);
+  cx_ = static_cast<float>(camera_.cx);
+  cy_ = static_cast<float>(camera_.cy);
+  inverse_fx_ = static_cast<float>(1.0 / camera_.fx);
+  inverse_fy_ = static_cast<float>(1.0 / camera_.fy);
+  cx_half_ = cx_ + 0.5F;
+  cy_half_ = cy_ + 0.5F;
+  width_f_ = static_cast<float>(camera_.width);
+  height_f_ = static_cast<float>(camera_.height);
+  for (std::uint16_t& d : depth_) d = 0;
+  for (Normal16& n : normals_) n = Normal16();
+}
+
+void DepthSnapshot::take(const Surface& surface) noexcept {
+  std::uint16_t* out = depth_.data();
+  for (int v = 0; v < height(); ++v)
+    for (int u = 0; u < width(); ++u)
+      *out++ = surface.depth(u * factor_ + factor_ / 2, v * factor_ + factor_ / 2);
+}
+
+void DepthSnapshot::compute_normals(int first, int last, double metres) noexcept {
+  for (int row = std::max(first, 0); row < std::min(last, lattice_height()); ++row)
+    for (int column = 0; column < lattice_width(); ++column) {
+      Normal16& n = normals_[static_cast<std::size_t>(row * lattice_width() + column)];
+      if (!fit_normal(column * kNormalStep, row * kNormalStep, metres, n)) n = Normal16();
+    }
+}
+
+bool DepthSnapshot::fit_normal(int u, int v, double metres, Normal16& out) const noexcept {
+  const int centre = depth(u, v);
+  if (centre == 0) return false;
+  const double z = centre * 0.000125;
+  const double pixel = z / camera_.fx;
+  // At most seven by seven readings, whatever the window.
+  const int half = std::clamp(static_cast<int>(metres / pixel + 0.5), 1, 12);
+  const int step = (half + 2) / 3;
+  const int reach = half / step * step;
+  const double slope = kTan75 * pixel * 8000.0;
+  const double noise = 4 * sensor_.sigma(z) * 8000.0;
+  std::int64_t n = 0, su = 0, sv = 0, sd = 0, suu = 0, suv = 0, svv = 0, sud = 0, svd = 0;
+  for (int dv = -reach; dv <= reach; dv += step) {
+    if (v + dv < 0 || v + dv >= height()) continue;
+    for (int du = -reach; du <= reach; du += step) {
+      if (u + du < 0 || u + du >= width()) continue;
+      const int d = depth(u + du, v + dv);
+      if (d == 0) continue;
+      const int distance = std::max(du < 0 ? -du : du, dv < 0 ? -dv : dv);
+      const int difference = d - centre;
+      const int limit = static_cast<int>(noise + slope * distance);
+      if (difference > limit || difference < -limit) continue;
+      ++n;
+      su += du;
+      sv += dv;
+      sd += difference;
+      suu += du * du;
+      suv += du * dv;
+      svv += dv * dv;
+      sud += du * difference;
+      svd += dv * difference;
+    }
+  }
+  if (n < 6) return false;
+  // Centred moments times n: exact integers.
+  const auto cuu = static_cast<double>(n * suu - su * su), cuv = static_cast<double>(n * suv - su * sv),
+             cvv = static_cast<double>(n * svv - sv * sv), cud = static_cast<double>(n * sud - su * sd),
+             cvd = static_cast<double>(n * svd - sv * sd);
+  const double determinant = cuu * cvv - cuv * cuv;
+  if (!(determinant > 0.02 * cuu * cvv)) return false;
+  const double a = (cud * cvv - cvd * cuv) / determinant, b = (cvd * cuu - cud * cuv) / determinant;
+  // The tangent plane of z(u, v) seen through the pinhole, turned towards the camera.
+  const double nx = a * camera_.fx, ny = b * camera_.fy;
+  const double nz = -(centre + a * (u - camera_.cx) + b * (v - camera_.cy));
+  const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+  if (!(length > 0)) return false;
+  const double scale = 16384.0 / length;
+  out = {static_cast<std::int16_t>(std::floor(nx * scale + 0.5)),
+         static_cast<std::int16_t>(std::floor(ny * scale + 0.5)),
+         static_cast<std::int16_t>(std::floor(nz * scale + 0.5)), 0};
+  return true;
+}
+
+}  // namespace pliant
