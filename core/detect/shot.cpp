@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "core/detect/symmetric_eigen.hpp"
-
 namespace pliant {
 
 namespace {
@@ -41,10 +39,11 @@ std::int16_t to_q14(double x) noexcept {
 }  // namespace
 
 double support_radius_for(double spacing, double model_radius) noexcept {
-  // About 150 points of a surface lie within seven spacings: enough for 352 bins to be more than chance. A
-  // support of a fifth of the object's radius or more sees more than a patch that looks like any other.
-  const double by_points = 7 * spacing;
-  const double by_shape = 0.2 * model_radius;
+  // About 110 points of a surface lie within six spacings: enough for the 352 bins to be more than chance.
+  // Three tenths of the object's radius see more than a patch that looks like any other, and still less than
+  // half of what a single view shows.
+  const double by_points = 6 * spacing;
+  const double by_shape = 0.3 * model_radius;
   return by_points > by_shape ? by_points : by_shape;
 }
 
@@ -66,30 +65,32 @@ bool ShotDescriber::describe(const OrientedPoints& points, const PointGrid& grid
                     });
   if (count < kLeastNeighbours) return false;
 
-  // Local reference frame: covariance about the keypoint, weighted by the distance to the support's edge.
-  Matrix3 covariance = Matrix3::Zero();
-  Vector3 mean_normal = Vector3::Zero();
+  // z: the mean normal of the inner third, where the surface is most like the keypoint's own. x: where the
+  // normals of the support lean to in the plane across z, farther ones counting more: unlike the axes of the
+  // covariance it has a sign, and it does not depend on how evenly the points lie.
+  Vector3 z = Vector3::Zero();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double w = 1.0 / 3 - static_cast<double>(neighbours_[k].distance);
+    if (w > 0) z += w * normal_of(points.normals[neighbours_[k].index]);
+  }
+  const double z_length = std::sqrt(z.dot(z));
+  if (!(z_length > 1e-6)) return false;
+  z /= z_length;
+  Vector3 x = Vector3::Zero();
+  double weight = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const Neighbour& n = neighbours_[k];
-    const double w = 1 - static_cast<double>(n.distance);
     const Vector3 d(n.x, n.y, n.z);
-    covariance += w * d * d.transpose();
-    mean_normal += w * normal_of(points.normals[n.index]);
+    const double height = z.dot(d);
+    const double across = d.dot(d) - height * height;
+    const double w = (1 - static_cast<double>(n.distance)) * std::sqrt(across > 0 ? across : 0);
+    x += w * normal_of(points.normals[n.index]);
+    weight += w;
   }
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
-  if (!(eigen.values(1) > 1e-4 * eigen.values(2))) return false;
-  Vector3 z = eigen.vectors.col(0);
-  if (z.dot(mean_normal) < 0) z = -z;
-  Vector3 x = eigen.vectors.col(2);
-  std::size_t ahead = 0, behind = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Neighbour& n = neighbours_[k];
-    const double along = x.x() * static_cast<double>(n.x) + x.y() * static_cast<double>(n.y) +
-                         x.z() * static_cast<double>(n.z);
-    ahead += along > 0;
-    behind += along < 0;
-  }
-  if (behind > ahead) x = -x;
+  x -= x.dot(z) * z;
+  const double x_length = std::sqrt(x.dot(x));
+  if (!(x_length > 1e-4 * weight)) return false;
+  x /= x_length;
   const Vector3 y(z.y() * x.z() - z.z() * x.y(), z.z() * x.x() - z.x() * x.z(),
                   z.x() * x.y() - z.y() * x.x());
   for (int i = 0; i < 3; ++i) {

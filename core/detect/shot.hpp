@@ -32,15 +32,15 @@ struct OrientedPoints {
 /// Computes descriptors one at a time. Work a descriptor is bounded by kMostNeighbours.
 class ShotDescriber {
  public:
-  static constexpr std::size_t kMostNeighbours = 1024;  ///< further ones in the support are not looked at
+  static constexpr std::size_t kMostNeighbours = 4096;  ///< further ones in the support are not looked at
   static constexpr std::size_t kLeastNeighbours = 12;   ///< fewer points tell nothing
 
-  /// Takes the scratch memory (about 24 kB).
+  /// Takes the scratch memory (about 96 kB).
   void lay_out(Workspace& workspace) noexcept;
 
   /// Descriptor and frame at `points.positions[index]` from the points within `support_radius` (metres),
   /// found through `grid`, which indexes `points.positions`. False when there are too few or their spread
-  /// fixes no frame (a line, one point repeated); the outputs are zero then.
+  /// fixes no frame (a plane, one point repeated); the outputs are zero then.
   [[nodiscard]] bool describe(const OrientedPoints& points, const PointGrid& grid, std::size_t index,
                               double support_radius, Descriptor& descriptor, LocalFrame& frame) noexcept;
 
