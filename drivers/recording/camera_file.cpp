@@ -6,7 +6,6 @@
 #include <toml++/toml.h>
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -27,12 +26,6 @@ struct Key {
   double low, high;
 };
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
 class Reader {
  public:
   explicit Reader(std::string_view name) : name_(name) {}
@@ -52,8 +45,8 @@ class Reader {
       if (!value || !node.is_number())
         return at(node.source(), fmt::format("'{}' must be a number", known->name));
       if (!(*value >= known->low && *value <= known->high))
-        return at(node.source(), fmt::format("'{}' is {}; must be {} to {}", known->name, number(*value),
-                                             number(known->low), number(known->high)));
+        return at(node.source(),
+                  fmt::format("'{}' is {}; must be {} to {}", known->name, *value, known->low, known->high));
       *known->value = *value;
     }
     return success();
@@ -132,8 +125,8 @@ std::string camera_text(const CameraFile& camera) {
   return fmt::format(
       "width = {}\nheight = {}\nfx = {}\nfy = {}\ncx = {}\ncy = {}\ndepth_scale = {}\n\n"
       "[sensor]\nnoise_floor = {}\nnoise_growth = {}\nnear_limit = {}\nfar_limit = {}\n",
-      c.width, c.height, number(c.fx), number(c.fy), number(c.cx), number(c.cy), number(c.depth_scale),
-      number(s.noise_floor), number(s.noise_growth), number(s.near_limit), number(s.far_limit));
+      c.width, c.height, c.fx, c.fy, c.cx, c.cy, c.depth_scale, s.noise_floor, s.noise_growth, s.near_limit,
+      s.far_limit);
 }
 
 }  // namespace pliant
