@@ -1,0 +1,31 @@
+// 16 products an instruction (pmaddubsw), 16-bit sums: see descriptor_match.hpp for the bound.
+#include <smmintrin.h>
+
+#include "core/detect/descriptor_match.hpp"
+
+namespace pliant {
+
+void dot_products_sse41(const Descriptor* queries, const Descriptor* candidates, std::size_t count,
+                        std::int16_t* dots) noexcept {
+  const auto load = [](const Descriptor& d, std::size_t i) {
+    return _mm_loadu_si128(static_cast<const __m128i*>(static_cast<const void*>(d.bins.data() + i)));
+  };
+  const __m128i ones = _mm_set1_epi16(1);
+  for (std::size_t c = 0; c < count; ++c) {
+    __m128i sum[kDotQueries] = {_mm_setzero_si128(), _mm_setzero_si128(), _mm_setzero_si128(),
+                                _mm_setzero_si128()};
+    for (std::size_t i = 0; i < kDescriptorSize; i += 16) {
+      const __m128i candidate = load(candidates[c], i);
+      for (std::size_t q = 0; q < kDotQueries; ++q)
+        sum[q] = _mm_add_epi16(sum[q], _mm_maddubs_epi16(load(queries[q], i), candidate));
+    }
+    for (std::size_t q = 0; q < kDotQueries; ++q) sum[q] = _mm_madd_epi16(sum[q], ones);
+    const __m128i all = _mm_hadd_epi32(_mm_hadd_epi32(sum[0], sum[1]), _mm_hadd_epi32(sum[2], sum[3]));
+    dots[c] = static_cast<std::int16_t>(_mm_extract_epi32(all, 0));
+    dots[count + c] = static_cast<std::int16_t>(_mm_extract_epi32(all, 1));
+    dots[2 * count + c] = static_cast<std::int16_t>(_mm_extract_epi32(all, 2));
+    dots[3 * count + c] = static_cast<std::int16_t>(_mm_extract_epi32(all, 3));
+  }
+}
+
+}  // namespace pliant
