@@ -1,0 +1,90 @@
+// What the four messages hold, on the receiving side, and how they are decoded. See types/*.lcm for the
+// meaning, units and frames of every field.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/rigid_transform.hpp"
+#include "core/track_result.hpp"
+
+namespace pliant {
+
+/// The channels, in the order in which a frame's messages are sent.
+enum class MessageKind : std::uint8_t { pose, regions, deformed, status };
+inline constexpr int kMessageKinds = 4;
+
+/// "_POSE", "_REGIONS", "_DEFORMED", "_STATUS".
+[[nodiscard]] std::string_view channel_suffix(MessageKind kind) noexcept;
+
+/// No message body is longer.
+inline constexpr std::size_t kMaxMessageBytes = 16000;
+
+struct PoseMessage {
+  std::int64_t utime = 0;
+  std::array<double, 3> trans{};
+  std::array<double, 4> quat{1, 0, 0, 0};  ///< w, x, y, z
+};
+
+struct RegionMessage {
+  std::int8_t id = 0, parent = -1;
+  std::int32_t points = 0;
+  float rms = 0, confidence = 0;
+  std::array<double, 3> trans{};
+  std::array<double, 4> quat{1, 0, 0, 0};  ///< w, x, y, z
+};
+
+struct RegionsMessage {
+  std::int64_t utime = 0, frame = 0, model_id = 0;
+  TrackState state = TrackState::searching;
+  float confidence = 0;
+  std::int16_t part = 0, parts = 1;
+  std::vector<RegionMessage> regions;
+  std::int32_t model_points = 0, first_point = 0;
+  std::vector<std::int8_t> labels;
+};
+
+struct DeformedMessage {
+  std::int64_t utime = 0, frame = 0, model_id = 0;
+  std::int16_t part = 0, parts = 1;
+  std::int32_t num_deformed = 0;
+  std::vector<std::int16_t> index;
+  std::vector<Point3f> position, displacement;
+};
+
+/// State of the depth device, as in status_t.
+enum class DeviceState : std::uint8_t { closed, opening, streaming, silent, reconnecting, ended, lost };
+
+struct StageMessage {
+  std::string name;
+  std::int32_t median = 0, p99 = 0, max = 0;  ///< µs
+};
+
+struct StatusMessage {
+  std::int64_t utime = 0;
+  std::string version, source;
+  std::int64_t model_id = 0, frame = -1;
+  TrackState state = TrackState::searching;
+  DeviceState device = DeviceState::closed;
+  float rate = 0;
+  std::int32_t latency_median = 0, latency_p99 = 0, latency_max = 0;
+  std::vector<StageMessage> stages;
+  std::int64_t tracked = 0, searching = 0, lost = 0, dropped = 0, bad_frames = 0, deadline_misses = 0;
+  std::int64_t unsent = 0, send_failures = 0;
+  std::int64_t workspace_bytes = 0, rss_bytes = 0, heap_calls = 0, page_faults = 0;
+  std::string last_error;
+};
+
+/// Decode a message body of any origin. False, and `message` of no use, where the body is not a whole, sound
+/// message of its type: wrong fingerprint, cut short, bytes left over, counts or indices out of range,
+/// numbers that are not finite, quaternions that are not unit. Storage in `message` is reused.
+[[nodiscard]] bool decode(std::span<const std::uint8_t> body, PoseMessage& message);
+[[nodiscard]] bool decode(std::span<const std::uint8_t> body, RegionsMessage& message);
+[[nodiscard]] bool decode(std::span<const std::uint8_t> body, DeformedMessage& message);
+[[nodiscard]] bool decode(std::span<const std::uint8_t> body, StatusMessage& message);
+
+}  // namespace pliant

@@ -1,0 +1,21 @@
+// Whether multicast works on this host, found out before LCM is asked: LCM prints pages and waits ten
+// seconds.
+#pragma once
+
+#include <string>
+
+#include "drivers/lcm/lcm_url.hpp"
+
+namespace pliant {
+
+/// Null when the kernel knows a way to the group, else why not. No packet is sent, nothing is allocated.
+[[nodiscard]] const char* multicast_route_fault(const LcmUrl& url) noexcept;
+
+/// Sends a few bytes to the group on a port of its own and waits at most 200 ms for them to come back.
+/// Subscribers on this host hear nothing where they do not.
+[[nodiscard]] bool multicast_comes_back(const LcmUrl& url) noexcept;
+
+/// One line: `fault` and the commands that mend it.
+[[nodiscard]] std::string multicast_advice(const LcmUrl& url, std::string_view fault);
+
+}  // namespace pliant
