@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/limits.hpp"
+#include "drivers/recording/text_file.hpp"
 #include "firmware-app/config/settings_table.hpp"
 
 namespace pliant {
@@ -15,8 +16,9 @@ std::vector<Setting> config_settings(Config& c) {
   return {
       {"", "model", &c.model, 0, 4096, "", "the model file to track"},
       {"", "source", &c.source, 0, 4096, "", "where depth frames come from"},
-      {"lcm", "url", &c.lcm.url, 1, 1024, "", "LCM network, or \"none\""},
-      {"lcm", "prefix", &c.lcm.prefix, 1, 32, "", "first word of the channels' names"},
+      {"lcm", "url", &c.lcm.url, 0, 1024, "",
+       "LCM network, \"none\" to publish nothing, \"\" for the default"},
+      {"lcm", "prefix", &c.lcm.prefix, 1, 54, "", "first word of the channels' names"},
       {"lcm", "publish_depth", &c.lcm.publish_depth, 0, 1, "", "publish the depth frames too"},
       {"track", "budget_ms", &c.track.budget_ms, 1, 1000, "ms", "time that one frame may take"},
       {"track", "max_regions", &c.track.max_regions, 1, limits::kMaxRegions, "",
@@ -47,8 +49,8 @@ Outcome parse_config(std::string_view text, std::string_view name, Config& confi
 }
 
 Result<Config> read_config(const std::string& path) {
-  const Result<std::string> text = read_text_file(path, "config file");
-  if (!text) return text.error();
+  const Result<std::string> text = read_text_file(path, kMaxSettingsText);
+  if (!text) return Error{ErrorKind::bad_input, "cannot read the config file " + text.error().message};
   Config config;
   if (Outcome parsed = parse_config(*text, path, config); !parsed) return parsed.error();
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();

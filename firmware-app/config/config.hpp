@@ -15,7 +15,7 @@ struct Config {
   std::string model;
   std::string source;
   struct Lcm {
-    std::string url = "udpm://239.255.76.67:7667?ttl=0";
+    std::string url;
     std::string prefix = "PLIANT";
     bool publish_depth = false;
   } lcm;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/limits.hpp"
+#include "drivers/recording/text_file.hpp"
 #include "firmware-app/config/settings_table.hpp"
 
 namespace pliant {
@@ -49,8 +50,8 @@ Outcome parse_sensor(std::string_view text, std::string_view name, SensorFile& s
 }
 
 Result<SensorFile> read_sensor(const std::string& path) {
-  const Result<std::string> text = read_text_file(path, "sensor description");
-  if (!text) return text.error();
+  const Result<std::string> text = read_text_file(path, kMaxSettingsText);
+  if (!text) return Error{ErrorKind::bad_input, "cannot read the sensor description " + text.error().message};
   SensorFile sensor;
   if (Outcome parsed = parse_sensor(*text, path, sensor); !parsed) return parsed.error();
   return sensor;

@@ -1,9 +1,9 @@
 // Reading TOML into a table of settings.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <limits>
 
+#include "drivers/common/nearest_word.hpp"
 #include "firmware-app/config/settings_table.hpp"
 
 #define TOML_EXCEPTIONS 0
@@ -31,6 +31,8 @@ std::string shown(std::string_view text) {
 
 const Setting& nearest(std::span<const Setting> settings, std::string_view table, std::string_view key) {
   const Setting* best = settings.data();
+  key = key.substr(0, 64);  // a longer one is no slip of the pen
+  table = table.substr(0, 64);
   std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const Setting& s : settings) {
     // A key in the wrong table costs one edit, so that a right name in a wrong place is found.

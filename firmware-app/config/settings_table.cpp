@@ -2,12 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <system_error>
-
 namespace pliant {
 
 namespace {
@@ -56,41 +50,6 @@ std::string describe_settings(std::span<const Setting> settings) {
     const std::string name = s.table.empty() ? std::string(s.key) : fmt::format("{}.{}", s.table, s.key);
     text += fmt::format("{:<22} {:<36} {}: {}\n", name, setting_value(s), s.meaning, allowed_values(s));
   }
-  return text;
-}
-
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Rows of the classic dynamic programme; three are kept for the swaps.
-  std::vector<std::size_t> before(b.size() + 1), previous(b.size() + 1), row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) previous[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const bool same = a[i - 1] == b[j - 1];
-      row[j] = std::min({previous[j] + 1, row[j - 1] + 1, previous[j - 1] + (same ? 0U : 1U)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        row[j] = std::min(row[j], before[j - 2] + 1);
-    }
-    before.swap(previous);
-    previous.swap(row);
-  }
-  return previous[b.size()];
-}
-
-Result<std::string> read_text_file(const std::string& path, std::string_view what) {
-  std::error_code ignored;
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxSettingsText + 1, '\0');
-  if (!file)
-    return Error{ErrorKind::bad_input,
-                 fmt::format("cannot read {} {}: {}", what, path, std::generic_category().message(errno))};
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || (file.fail() && !file.eof()))
-    return Error{ErrorKind::bad_input, fmt::format("cannot read {} {}: not a readable file", what, path)};
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > kMaxSettingsText)
-    return Error{ErrorKind::bad_input, fmt::format("{} is longer than 1 MB: not a {}", path, what)};
   return text;
 }
 

@@ -42,11 +42,4 @@ inline constexpr std::size_t kMaxSettingsText = std::size_t{1} << 20;
 /// One line a setting: key, value, allowed values, meaning.
 [[nodiscard]] std::string describe_settings(std::span<const Setting> settings);
 
-/// Number of single-character insertions, deletions, substitutions and swaps of neighbours that turn `a` into
-/// `b`.
-[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
-
-/// The whole file as text, at most kMaxSettingsText bytes.
-[[nodiscard]] Result<std::string> read_text_file(const std::string& path, std::string_view what);
-
 }  // namespace pliant

@@ -1,0 +1,169 @@
+#include "firmware-app/pipeline/run_pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "core/memory/workspace.hpp"
+#include "firmware-app/measure/clock.hpp"
+#include "firmware-app/pipeline/stop_signal.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// What the sending thread tells: its costs and when a frame's messages are out.
+class SendWatch {
+ public:
+  SendWatch(PathCost& cost, LatencyMeter& latency) : cost_(cost), latency_(latency) {}
+  [[nodiscard]] SendObserver observer() {
+    return {.thread_started = [](void* self) { of(self).watch_.emplace(of(self).cost_); },
+            .group_sent =
+                [](void* self, std::int64_t utime) {
+                  of(self).latency_.sent(utime);
+                  of(self).watch_->update();
+                },
+            .thread_ends = [](void* self) { of(self).watch_.reset(); },
+            .context = this};
+  }
+
+ private:
+  static SendWatch& of(void* self) { return *static_cast<SendWatch*>(self); }
+  PathCost& cost_;
+  LatencyMeter& latency_;
+  std::optional<PathWatch> watch_;
+};
+
+void warn(const RunSettings& settings, const std::string& line) {
+  if (settings.warn && !line.empty()) settings.warn(line);
+}
+
+/// Waits for the tracking thread, shows progress, passes a stop on, tells of a failed write as soon as it is
+/// known.
+void supervise(const RunSettings& settings, const LiveFigures& live, const std::atomic<bool>& done,
+               Capture& capture, FrameRing& ring, const FrameFiles* files, RunEnd& end) {
+  while (!done.load(std::memory_order_acquire)) {
+    sleep_until_ns(monotonic_ns() + 20'000'000);
+    if (!end.stopped && StopSignal::requested()) {
+      end.stopped = true;
+      capture.stop();
+      ring.abort();
+    }
+    if (files != nullptr && !end.files_failed) {
+      const std::string failure = files->failure();
+      end.files_failed = !failure.empty();
+      if (end.files_failed) warn(settings, failure + "; tracking goes on without files");
+    }
+    if (settings.progress) settings.progress(live);
+  }
+}
+
+}  // namespace
+
+Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const RunSettings& settings) {
+  const Intrinsics& camera = source.intrinsics();
+  const bool newest_wins = settings.realtime || source.live();
+
+  RunEnd end;
+  RunFigures& figures = end.figures;
+  figures.workspace_bytes = Tracker::workspace_bytes(model, camera, settings.track);
+  Result<MemoryBlock> workspace = MemoryBlock::allocate(figures.workspace_bytes);
+  if (!workspace) return workspace.error();
+  figures.workspace_locked = workspace->locked();
+  Tracker tracker;
+  if (const char* fault = tracker.start(model, camera, settings.sensor, settings.track, workspace->bytes());
+      fault != nullptr)
+    return Error{ErrorKind::bad_input, fmt::format("the tracker cannot start: {}", fault)};
+
+  Result<MemoryBlock> ring_memory = FrameRing::allocate(camera);
+  if (!ring_memory) return ring_memory.error();
+  FrameRing ring(camera, newest_wins ? FrameRing::Policy::newest : FrameRing::Policy::keep_all, *ring_memory);
+
+  std::unique_ptr<FrameFiles> files;
+  if (!settings.files.trajectory.empty() || !settings.files.points.empty()) {
+    FrameFilesSettings file_settings = settings.files;
+    file_settings.wait_for_disk = !newest_wins;
+    Result<std::unique_ptr<FrameFiles>> made = FrameFiles::create(file_settings, model.positions());
+    if (!made) return made.error();
+    files = std::move(*made);
+  }
+
+  PathCost cost;
+  LatencyMeter latency;
+  SendWatch send_watch(cost, latency);
+  TrackMessages messages(model.positions(), model.header().checksum);
+  std::unique_ptr<LcmPublisher> publisher;
+  if (settings.lcm_url != "none") {
+    Result<std::unique_ptr<LcmPublisher>> made =
+        LcmPublisher::create({settings.lcm_url, settings.lcm_prefix}, model.size(), send_watch.observer());
+    if (!made) return made.error();
+    publisher = std::move(*made);
+    warn(settings, publisher->warning());
+  }
+
+  LiveFigures live;
+  Capture capture(
+      source, ring,
+      {.pace_by_stamps = settings.realtime && !source.live(), .frame_limit = settings.frame_limit});
+  TrackingLoop::Settings loop_settings;
+  loop_settings.budget_ns = newest_wins ? static_cast<std::int64_t>(settings.budget_ms * 1e6) : 0;
+  loop_settings.wait_for_publisher = !newest_wins;
+  loop_settings.hash = settings.hash;
+  loop_settings.version = settings.version;
+  loop_settings.source = settings.source_name;
+  loop_settings.model_id = model.header().checksum;
+  loop_settings.workspace_bytes = figures.workspace_bytes;
+  TrackingLoop loop(
+      {ring, capture, tracker, messages, publisher.get(), files.get(), latency, cost, live, settings.witness},
+      loop_settings);
+
+  std::atomic<bool> done{false};
+  Worker capture_thread, tracking_thread;
+  std::string warning;
+  Outcome started = tracking_thread.start(
+      {.name = "pliant-track", .priority = settings.priority, .affinity = settings.affinity},
+      [&] {
+        loop.run(figures);
+        done.store(true, std::memory_order_release);
+      },
+      warning);
+  if (!started) return started.error();
+  warn(settings, warning);
+  started = capture_thread.start(
+      {.name = "pliant-capture", .priority = 0, .affinity = {}}, [&capture] { capture.run(); }, warning);
+  if (!started) {
+    ring.close();
+    return started.error();
+  }
+
+  supervise(settings, live, done, capture, ring, files.get(), end);
+  tracking_thread.join();
+  capture.stop();
+  ring.abort();
+  capture_thread.join();
+  if (publisher != nullptr) {
+    static_cast<void>(publisher->flush(300));
+    figures.sent = publisher->counters();
+    publisher.reset();
+  }
+  if (files != nullptr) {
+    const Outcome closed = files->finish();
+    if (!closed && !end.files_failed) warn(settings, closed.error().message);
+    end.files_failed = end.files_failed || !closed;
+    figures.files_left_out = static_cast<std::int64_t>(files->left_out());
+  }
+  end.device_lost = capture.device() == DeviceState::lost;
+  end.fault = capture.fault();
+  figures.dropped = static_cast<std::int64_t>(ring.dropped());
+  figures.bad_frames += capture.bad_frames();
+  figures.latency = latency.whole();
+  figures.heap_calls = cost.heap_calls.load();
+  figures.page_faults = cost.page_faults.load();
+  figures.heap_watched = heap_is_watched();
+  figures.resident_bytes = peak_resident_bytes();
+  return end;
+}
+
+}  // namespace pliant

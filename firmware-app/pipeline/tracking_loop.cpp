@@ -1,0 +1,145 @@
+#include "firmware-app/pipeline/tracking_loop.hpp"
+
+#include <array>
+#include <ctime>
+
+#include "firmware-app/measure/clock.hpp"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+std::int32_t microseconds(std::int64_t nanoseconds) {
+  return static_cast<std::int32_t>((nanoseconds + 500) / 1000);
+}
+
+std::int64_t wall_clock_us() {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1000;
+}
+
+}  // namespace
+
+TrackingLoop::TrackingLoop(const Parts& parts, const Settings& settings)
+    : parts_(parts), settings_(settings), work_(settings.budget_ns) {}
+
+void TrackingLoop::run(RunFigures& figures) {
+  touch_stack();
+  PathWatch watch(parts_.cost);
+  parts_.tracker.observe(figures.profile.observer());
+  std::int64_t end_ns = 0;
+  while (const CapturedFrame* captured = parts_.ring.pop()) {
+    if (first_arrival_ns_ == 0) first_arrival_ns_ = last_status_ns_ = captured->arrival_ns;
+    take(*captured, figures);
+    end_ns = monotonic_ns();
+    watch.update();
+  }
+  figures.seconds = static_cast<double>(end_ns - first_arrival_ns_) * 1e-9;
+  figures.deadline_misses = work_.misses();
+  figures.least_work_level = work_.least_level();
+  if (parts_.publisher != nullptr && last_frame_ >= 0) publish_status(figures);
+  watch.update();
+  parts_.tracker.observe({});
+  if (settings_.hash) figures.output_sha256 = hash_.hex();
+}
+
+void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
+  figures.profile.begin_frame();
+  const TrackResult& result = parts_.tracker.process(captured.frame);
+  const bool tracked = result.frame_used && result.state == TrackState::tracking;
+  if (!result.frame_used) {
+    ++figures.bad_frames;
+    return;
+  }
+  figures.profile.end_frame(tracked);
+  recent_.add_last_of(figures.profile, tracked);
+
+  last_frame_ = captured.frame.number;
+  const bool state_changed = figures.frames() == 0 || result.state != figures.last_state;
+  figures.last_state = result.state;
+  if (tracked && figures.first_tracked < 0) figures.first_tracked = captured.frame.number;
+  ++(tracked ? figures.tracked : result.state == TrackState::lost ? figures.lost : figures.searching);
+
+  hand_over(result, captured.arrival_ns);
+  if (parts_.witness.seen != nullptr) parts_.witness.seen(parts_.witness.context, captured.frame, result);
+  parts_.tracker.set_work_level(work_.next_level(figures.profile.last_total()));
+  if (parts_.publisher != nullptr && (state_changed || monotonic_ns() - last_status_ns_ >= kSecond))
+    publish_status(figures);
+
+  parts_.live.frame.store(captured.frame.number, std::memory_order_relaxed);
+  parts_.live.frames.store(figures.frames(), std::memory_order_relaxed);
+  parts_.live.tracked.store(figures.tracked, std::memory_order_relaxed);
+  parts_.live.state.store(result.state, std::memory_order_relaxed);
+  parts_.live.last_total_ns.store(figures.profile.last_total(), std::memory_order_relaxed);
+  parts_.live.confidence.store(result.confidence, std::memory_order_relaxed);
+  parts_.live.regions.store(static_cast<int>(result.regions.size()), std::memory_order_relaxed);
+}
+
+void TrackingLoop::hand_over(const TrackResult& result, std::int64_t arrival_ns) {
+  const std::span<const MessageBody> bodies = parts_.messages.encode(result);
+  if (settings_.hash) hash_.add(bodies);
+  parts_.latency.arrived(result.utime, arrival_ns);
+  if (parts_.publisher != nullptr) {
+    // Waits for the frame before, which is normally long out; a second is more than any network needs.
+    if (settings_.wait_for_publisher) static_cast<void>(parts_.publisher->flush(1000));
+    parts_.publisher->publish(bodies, result.utime);
+  } else {
+    parts_.latency.sent(result.utime);
+  }
+  if (parts_.files != nullptr) parts_.files->submit(result);
+}
+
+void TrackingLoop::publish_status(const RunFigures& figures) {
+  const std::int64_t now = monotonic_ns();
+  std::array<StageTimes, kStageCount + 1> stages{};
+  for (int i = 0; i <= kStageCount; ++i) {
+    const Histogram& times = recent_.stage(i);
+    stages[static_cast<std::size_t>(i)] = {kStageNames[static_cast<std::size_t>(i)],
+                                           microseconds(times.median()), microseconds(times.p99()),
+                                           microseconds(times.max())};
+  }
+  const std::array<std::int64_t, 3> latency = parts_.latency.take_recent();
+  const SendCounters sent = parts_.publisher->counters();
+  std::array<char, 256> fault{};
+  parts_.capture.copy_fault(fault);
+  const double seconds = static_cast<double>(now - last_status_ns_) * 1e-9;
+
+  StatusContent status;
+  status.utime = wall_clock_us();
+  status.version = settings_.version;
+  status.source = settings_.source;
+  status.model_id = settings_.model_id;
+  status.frame = last_frame_;
+  status.state = figures.last_state;
+  status.device = parts_.capture.device();
+  status.rate = seconds > 0
+                    ? static_cast<float>(static_cast<double>(figures.frames() - frames_at_status_) / seconds)
+                    : 0.0F;
+  status.latency_median_us = microseconds(latency[0]);
+  status.latency_p99_us = microseconds(latency[1]);
+  status.latency_max_us = microseconds(latency[2]);
+  status.stages = stages;
+  status.tracked = figures.tracked;
+  status.searching = figures.searching;
+  status.lost = figures.lost;
+  status.dropped = static_cast<std::int64_t>(parts_.ring.dropped());
+  status.bad_frames = figures.bad_frames + parts_.capture.bad_frames();
+  status.deadline_misses = work_.misses();
+  status.unsent = sent.unsent;
+  status.send_failures = sent.failures;
+  status.workspace_bytes = static_cast<std::int64_t>(settings_.workspace_bytes);
+  status.rss_bytes = static_cast<std::int64_t>(resident_bytes());
+  status.heap_calls = static_cast<std::int64_t>(parts_.cost.heap_calls.load(std::memory_order_relaxed));
+  status.page_faults = static_cast<std::int64_t>(parts_.cost.page_faults.load(std::memory_order_relaxed));
+  status.last_error = fault.data();
+  parts_.publisher->publish_status(status);
+
+  recent_.clear();
+  last_status_ns_ = now;
+  frames_at_status_ = figures.frames();
+}
+
+}  // namespace pliant

@@ -1,0 +1,64 @@
+#include "firmware-app/pipeline/worker.hpp"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+namespace pliant {
+
+namespace {
+
+constexpr std::size_t kStackBytes = std::size_t{4} << 20;
+
+void* run(void* work) {
+  (*static_cast<std::function<void()>*>(work))();
+  return nullptr;
+}
+
+}  // namespace
+
+Outcome Worker::start(const WorkerSettings& settings, std::function<void()> work, std::string& warning) {
+  work_ = std::move(work);
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kStackBytes);
+  // Signals go to the main thread, which ends the run.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const int failed = pthread_create(&thread_, &attributes, &run, &work_);
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  pthread_attr_destroy(&attributes);
+  if (failed != 0)
+    return Error{ErrorKind::device,
+                 fmt::format("cannot start a thread for {}: {}", settings.name, std::strerror(failed))};
+  running_ = true;
+  pthread_setname_np(thread_, settings.name);
+
+  if (settings.priority > 0) {
+    const sched_param parameter{settings.priority};
+    if (const int error = pthread_setschedparam(thread_, SCHED_FIFO, &parameter); error != 0)
+      warning = fmt::format("no real-time priority {} for {} ({}); run as root or raise the rtprio limit",
+                            settings.priority, settings.name, std::strerror(error));
+  }
+  if (!settings.affinity.empty()) {
+    cpu_set_t processors;
+    CPU_ZERO(&processors);
+    for (const int cpu : settings.affinity)
+      if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &processors);
+    if (const int error = pthread_setaffinity_np(thread_, sizeof processors, &processors); error != 0)
+      warning =
+          fmt::format("cannot bind {} to the processors asked for: {}", settings.name, std::strerror(error));
+  }
+  return success();
+}
+
+void Worker::join() {
+  if (running_) pthread_join(thread_, nullptr);
+  running_ = false;
+}
+
+}  // namespace pliant
