@@ -52,7 +52,8 @@ void ShotDescriber::lay_out(Workspace& workspace) noexcept {
 }
 
 bool ShotDescriber::describe(const OrientedPoints& points, const PointGrid& grid, std::size_t index,
-                             double support_radius, Descriptor& descriptor, LocalFrame& frame) noexcept {
+                             double support_radius, Descriptor& descriptor, LocalFrame& frame,
+                             float* lean) noexcept {
   descriptor.bins.fill(0);
   frame.axes.fill(0);
   const Point3f centre = points.positions[index];
@@ -91,6 +92,7 @@ bool ShotDescriber::describe(const OrientedPoints& points, const PointGrid& grid
   const double x_length = std::sqrt(x.dot(x));
   if (!(x_length > 1e-4 * weight)) return false;
   x /= x_length;
+  if (lean != nullptr) *lean = static_cast<float>(x_length / weight);
   const Vector3 y(z.y() * x.z() - z.z() * x.y(), z.z() * x.x() - z.x() * x.z(),
                   z.x() * x.y() - z.y() * x.x());
   for (int i = 0; i < 3; ++i) {

@@ -40,9 +40,12 @@ class ShotDescriber {
 
   /// Descriptor and frame at `points.positions[index]` from the points within `support_radius` (metres),
   /// found through `grid`, which indexes `points.positions`. False when there are too few or their spread
-  /// fixes no frame (a plane, one point repeated); the outputs are zero then.
+  /// fixes no frame (a plane, one point repeated); the outputs are zero then. `lean`: how far the normals
+  /// lean to the x axis on average, the sine of an angle: the frame of a flat or round support, whose lean is
+  /// small, means little.
   [[nodiscard]] bool describe(const OrientedPoints& points, const PointGrid& grid, std::size_t index,
-                              double support_radius, Descriptor& descriptor, LocalFrame& frame) noexcept;
+                              double support_radius, Descriptor& descriptor, LocalFrame& frame,
+                              float* lean = nullptr) noexcept;
 
  private:
   struct Neighbour {

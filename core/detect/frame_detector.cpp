@@ -1,0 +1,333 @@
+#include "core/detect/frame_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/detect/seam.hpp"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::size_t kQuickPoints = 64;       // first look at a proposal
+constexpr std::size_t kCloseLookPoints = 200;  // second look
+constexpr std::size_t kAlignPoints = 400;      // full refinement
+constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise of a fitted normal (2-4°)
+                                     // averaged over a support
+
+Vector3 to_vector(const Point3f& p) noexcept {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+
+/// Rows of the frame as a rotation: local <- cloud.
+Matrix3 axes_of(const LocalFrame& frame) noexcept {
+  Matrix3 m;
+  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = frame.axes[static_cast<std::size_t>(i)] / 16384.0;
+  return m;
+}
+
+}  // namespace
+
+void FrameDetector::lay_out(Workspace& workspace, const ModelView& model, const Intrinsics& camera,
+                            const DetectSettings& settings) noexcept {
+  settings_ = settings;
+  settings_.keypoints = std::clamp(settings.keypoints, 64U, 4096U);
+  settings_.rounds = std::clamp(settings.rounds, 1U, 8U);
+  settings_.matches =
+      std::clamp(settings.matches, 1U, static_cast<std::uint32_t>(DescriptorMatcher::kMostBest));
+  settings_.model_keypoints =
+      std::min(settings.model_keypoints, static_cast<std::uint32_t>(model.keypoint_count()));
+  snapshot_.lay_out(workspace, camera);
+  const Intrinsics reduced = reduced_intrinsics(camera);
+  constexpr int kStep = DepthSnapshot::kNormalStep;
+  const std::size_t most = static_cast<std::size_t>((reduced.width + kStep - 1) / kStep) *
+                           static_cast<std::size_t>((reduced.height + kStep - 1) / kStep);
+  sampling_.lay_out(workspace, most);
+  grid_.lay_out(workspace, most);
+  describer_.lay_out(workspace);
+  matcher_.lay_out(workspace, settings_.model_keypoints);
+  lattice_points_ = workspace.take<Point3f>(most);
+  lattice_normals_ = workspace.take<Normal16>(most);
+  points_ = workspace.take<Point3f>(most);
+  normals_ = workspace.take<Normal16>(most);
+  kept_ = workspace.take<std::uint32_t>(most);
+  order_ = workspace.take<std::uint32_t>(most);
+  key_points_ = workspace.take<Point3f>(settings_.keypoints);
+  descriptors_ = workspace.take<Descriptor>(settings_.keypoints);
+  frames_ = workspace.take<LocalFrame>(settings_.keypoints);
+  matches_ = workspace.take<Match>(settings_.keypoints * settings_.matches);
+  proposals_ = workspace.take<Proposal>(settings_.keypoints * settings_.matches);
+}
+
+void FrameDetector::start(const ModelView& model, const Intrinsics& camera, const SensorDescription& sensor,
+                          Kernels kernels) noexcept {
+  model_ = model;
+  snapshot_.start(camera, sensor);
+  matcher_.start(kernels);
+  // Ten points across the support's radius tell its shape; more cost time only.
+  leaf_ = std::max(model.spacing(), 0.1 * model.header().support_radius);
+  // A local frame is off by some degrees: a tenth of a radian at most of the lever counts as agreement at
+  // first.
+  coarse_ = 0.08 * model.radius();
+  // Where the noise is wider than the object's own relief, agreement says nothing.
+  widest_ = 0.12 * model.radius();
+  fine_ = 0.03 * model.radius();
+  state_ = DetectState::idle;
+}
+
+void FrameDetector::begin(const Surface& surface) noexcept {
+  snapshot_.take(surface);
+  hinted_ = false;
+  phase_ = Phase::normals;
+  cursor_ = 0;
+  round_ = 0;
+  finalist_count_ = 0;
+  best_ = Detection();
+  state_ = DetectState::working;
+}
+
+void FrameDetector::begin(const Surface& surface, const RigidTransform& pose, double radius) noexcept {
+  begin(surface);
+  hinted_ = true;
+  hint_ = pose;
+  hint_radius_ = radius;
+}
+
+DetectState FrameDetector::step(std::int64_t budget) noexcept {
+  while (state_ == DetectState::working) {
+    budget -= slice();
+    if (budget <= 0) break;
+  }
+  return state_;
+}
+
+std::int64_t FrameDetector::slice() noexcept {
+  switch (phase_) {
+    case Phase::normals:
+      return slice_normals();
+    case Phase::sample:
+      return slice_sample();
+    case Phase::describe:
+      return slice_describe();
+    case Phase::match:
+      return slice_match();
+    case Phase::propose:
+      return slice_propose();
+    case Phase::shortlist:
+      return slice_shortlist();
+    case Phase::settle:
+      return slice_settle();
+  }
+  return 1;
+}
+
+std::int64_t FrameDetector::slice_normals() noexcept {
+  constexpr int kRows = 8;
+  const int first = static_cast<int>(cursor_);
+  // Wide enough that σ of the depth tilts the plane by less than a few degrees, narrow against the support.
+  const double metres = std::max(leaf_, 0.2 * model_.header().support_radius);
+  snapshot_.compute_normals(first, first + kRows, metres);
+  cursor_ += kRows;
+  if (first + kRows >= snapshot_.lattice_height()) {
+    phase_ = Phase::sample;
+    cursor_ = 0;
+  }
+  return snapshot_.lattice_width() * kRows / 2;
+}
+
+std::int64_t FrameDetector::slice_sample() noexcept {
+  constexpr int kStep = DepthSnapshot::kNormalStep;
+  std::size_t count = 0;
+  for (int v = 0; v < snapshot_.height(); v += kStep)
+    for (int u = 0; u < snapshot_.width(); u += kStep) {
+      const Normal16& n = snapshot_.normal(u, v);
+      if (n.x == 0 && n.y == 0 && n.z == 0) continue;
+      lattice_points_[count] = snapshot_.vertex(u, v);
+      lattice_normals_[count++] = n;
+    }
+  point_count_ = sampling_.sample(lattice_points_.first(count), leaf_, kept_);
+  for (std::size_t k = 0; k < point_count_; ++k) {
+    points_[k] = lattice_points_[kept_[k]];
+    normals_[k] = lattice_normals_[kept_[k]];
+  }
+  const double support = model_.header().support_radius;
+  if (point_count_ < ShotDescriber::kLeastNeighbours ||
+      !grid_.build(points_.first(point_count_), grid_cell_for_support(support))) {
+    state_ = DetectState::nothing;
+    return 1;
+  }
+  // Keypoints: every point, in an order of which each prefix is spread over the picture: steps of the golden
+  // ratio.
+  order_count_ = point_count_;
+  order_next_ = 0;
+  std::size_t stride = point_count_ * 1000 / 1618 + 1;
+  const auto divides = [&](std::size_t s) {
+    std::size_t a = point_count_, b = s;
+    while (b != 0) {
+      const std::size_t r = a % b;
+      a = b;
+      b = r;
+    }
+    return a != 1;
+  };
+  while (stride > 1 && divides(stride)) --stride;
+  for (std::size_t k = 0, at = 0; k < point_count_; ++k, at = (at + stride) % point_count_)
+    order_[k] = static_cast<std::uint32_t>(at);
+  begin_round();
+  return static_cast<std::int64_t>(count) / 4 + 1;
+}
+
+void FrameDetector::begin_round() noexcept {
+  phase_ = Phase::describe;
+  cursor_ = 0;
+  key_count_ = 0;
+}
+
+std::int64_t FrameDetector::slice_describe() noexcept {
+  constexpr std::size_t kKeys = 8;
+  const OrientedPoints cloud = {points_.first(point_count_), normals_.first(point_count_)};
+  for (std::size_t k = 0; k < kKeys && key_count_ < settings_.keypoints && order_next_ < order_count_; ++k) {
+    const std::uint32_t i = order_[order_next_++];
+    float lean = 0;
+    if (!describer_.describe(cloud, grid_, i, model_.header().support_radius, descriptors_[key_count_],
+                             frames_[key_count_], &lean) ||
+        static_cast<double>(lean) < kLeastLean)
+      continue;
+    key_points_[key_count_++] = points_[i];
+  }
+  if (key_count_ == settings_.keypoints || order_next_ == order_count_) {
+    phase_ = Phase::match;
+    cursor_ = 0;
+  }
+  return 30 * static_cast<std::int64_t>(kKeys);
+}
+
+std::int64_t FrameDetector::slice_match() noexcept {
+  const std::size_t group =
+      std::min<std::size_t>(2 * kDotQueries, key_count_ - std::min(cursor_, key_count_));
+  matcher_.match(descriptors_.subspan(cursor_, group), model_.descriptors().first(settings_.model_keypoints),
+                 settings_.matches, matches_.subspan(cursor_ * settings_.matches));
+  for (std::size_t k = cursor_ * settings_.matches; k < (cursor_ + group) * settings_.matches; ++k) {
+    proposals_[k].scene = static_cast<std::uint16_t>(k / settings_.matches);
+    proposals_[k].model = matches_[k].model;
+  }
+  cursor_ += group;
+  if (cursor_ >= key_count_) {
+    phase_ = Phase::propose;
+    proposal_count_ = key_count_ * settings_.matches;
+    cursor_ = 0;
+  }
+  return static_cast<std::int64_t>(group * settings_.model_keypoints) / 12 + 1;
+}
+
+RigidTransform FrameDetector::pose_of(const Proposal& proposal) const noexcept {
+  const Matrix3 rotation =
+      axes_of(frames_[proposal.scene]).transpose() * axes_of(model_.frames()[proposal.model]);
+  return {rotation,
+          to_vector(key_points_[proposal.scene]) - rotation * to_vector(model_.positions()[proposal.model])};
+}
+
+std::int64_t FrameDetector::slice_propose() noexcept {
+  constexpr std::size_t kBatch = 128;
+  const std::size_t last = std::min(cursor_ + kBatch, proposal_count_);
+  for (; cursor_ < last; ++cursor_) {
+    Proposal& p = proposals_[cursor_];
+    p.score = static_cast<float>(
+        pose_evidence(model_, snapshot_, pose_of(p), kQuickPoints, coarse_, widest_).score());
+  }
+  if (cursor_ >= proposal_count_) {
+    shortlist_count_ = std::min(kShortlist, proposal_count_);
+    std::partial_sort(proposals_.begin(), proposals_.begin() + static_cast<std::ptrdiff_t>(shortlist_count_),
+                      proposals_.begin() + static_cast<std::ptrdiff_t>(proposal_count_),
+                      [](const Proposal& a, const Proposal& b) {
+                        if (a.score != b.score) return a.score > b.score;
+                        return a.scene != b.scene ? a.scene < b.scene : a.model < b.model;
+                      });
+    phase_ = Phase::shortlist;
+    cursor_ = 0;
+  }
+  return static_cast<std::int64_t>(kBatch) * 5;
+}
+
+bool FrameDetector::same_place(const RigidTransform& a, const RigidTransform& b) const noexcept {
+  const Vector3 apart = a * model_.centre() - b * model_.centre();
+  return apart.dot(apart) < 0.09 * model_.radius() * model_.radius() &&
+         cos_angle(a.rotation.transpose() * b.rotation) > 0.9;
+}
+
+void FrameDetector::judge(Candidate& candidate, std::size_t count) const noexcept {
+  candidate.evidence = pose_evidence(model_, snapshot_, candidate.pose, count, fine_, widest_);
+  candidate.score = candidate.evidence.score();
+  candidate.seamless = 0;
+  if (candidate.score <= 0) return;
+  candidate.seamless = seam_evidence(model_, snapshot_, candidate.pose, kEvidencePoints, fine_).share();
+  candidate.score -= candidate.seamless;
+}
+
+void FrameDetector::keep(const Candidate& candidate) noexcept {
+  // One candidate a place: the better one stays.
+  for (std::size_t k = 0; k < finalist_count_; ++k)
+    if (same_place(finalists_[k].pose, candidate.pose)) {
+      if (candidate.score > finalists_[k].score) finalists_[k] = candidate;
+      return;
+    }
+  if (finalist_count_ < kFinalists) {
+    finalists_[finalist_count_++] = candidate;
+    return;
+  }
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < finalist_count_; ++k)
+    if (finalists_[k].score < finalists_[worst].score) worst = k;
+  if (candidate.score > finalists_[worst].score) finalists_[worst] = candidate;
+}
+
+std::int64_t FrameDetector::slice_shortlist() noexcept {
+  if (cursor_ < shortlist_count_) {
+    Candidate candidate;
+    candidate.pose = pose_of(proposals_[cursor_++]);
+    refine_pose(model_, snapshot_, kCloseLookPoints, coarse_, fine_, 4, candidate.pose);
+    judge(candidate, kCloseLookPoints);
+    keep(candidate);
+  }
+  if (cursor_ >= shortlist_count_) {
+    phase_ = Phase::settle;
+    cursor_ = 0;
+  }
+  return 120;
+}
+
+std::int64_t FrameDetector::slice_settle() noexcept {
+  if (cursor_ < finalist_count_) {
+    Candidate& candidate = finalists_[cursor_++];
+    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.5 * fine_, 8, candidate.pose);
+    judge(candidate, kEvidencePoints);
+  }
+  if (cursor_ >= finalist_count_) decide();
+  return 400;
+}
+
+void FrameDetector::decide() noexcept {
+  best_ = Detection();
+  std::size_t first = kFinalists;
+  for (std::size_t k = 0; k < finalist_count_; ++k)
+    if (first == kFinalists || finalists_[k].score > finalists_[first].score) first = k;
+  if (first < kFinalists) {
+    best_.pose = finalists_[first].pose;
+    best_.score = finalists_[first].score;
+    best_.evidence = finalists_[first].evidence;
+    best_.seamless = finalists_[first].seamless;
+    for (std::size_t k = 0; k < finalist_count_; ++k)
+      if (!same_place(finalists_[k].pose, best_.pose))
+        best_.rival = std::max(best_.rival, finalists_[k].score);
+  }
+  const bool convincing = best_.score > 0.25;
+  if (convincing) {
+    state_ = DetectState::found;
+  } else if (++round_ < settings_.rounds && order_next_ < order_count_) {
+    begin_round();
+  } else {
+    state_ = DetectState::nothing;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,144 @@
+// Finds the model in one depth frame without a start pose, in bounded slices: the paper's rigid detection
+// (section 3.2) for depth pictures, with poses proposed by local reference frames and by grouping, judged by
+// free space.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/camera/intrinsics.hpp"
+#include "core/camera/sensor.hpp"
+#include "core/camera/surface.hpp"
+#include "core/detect/depth_snapshot.hpp"
+#include "core/detect/descriptor_match.hpp"
+#include "core/detect/point_grid.hpp"
+#include "core/detect/pose_evidence.hpp"
+#include "core/detect/shot.hpp"
+#include "core/detect/uniform_sampling.hpp"
+#include "core/memory/workspace.hpp"
+#include "core/model/model_view.hpp"
+#include "core/track_settings.hpp"
+
+namespace pliant {
+
+struct DetectSettings {
+  std::uint32_t keypoints = 1024;        ///< scene keypoints described in a round [64, 4096]
+  std::uint32_t rounds = 3;              ///< rounds of further keypoints until the object is found [1, 8]
+  std::uint32_t model_keypoints = 1024;  ///< of the model's, taken from the front [64, 2048]
+  std::uint32_t matches = 4;             ///< model keypoints tried for each scene keypoint [1, 8]
+};
+
+enum class DetectState : std::uint8_t {
+  idle,     ///< no frame was begun
+  working,  ///< call step() again
+  found,    ///< best() holds a pose
+  nothing   ///< the frame does not show the object, or not clearly
+};
+
+struct Detection {
+  RigidTransform pose;    ///< camera <- model, in the frame given to begin()
+  double score = -10;     ///< PoseEvidence::score() of the refined pose less its seamless share, at most 1
+  double rival = -10;     ///< of the best pose at a distinctly other place or attitude
+  PoseEvidence evidence;  ///< over kEvidencePoints model points
+  double seamless = 0;    ///< SeamEvidence::share()
+};
+
+class FrameDetector {
+ public:
+  static constexpr std::size_t kEvidencePoints = 600;
+
+  /// Takes the memory for this model and camera (about 4 MB).
+  void lay_out(Workspace& workspace, const ModelView& model, const Intrinsics& camera,
+               const DetectSettings& settings) noexcept;
+  /// After lay_out() on a real workspace. `model`'s memory must outlive the detector.
+  void start(const ModelView& model, const Intrinsics& camera, const SensorDescription& sensor,
+             Kernels kernels) noexcept;
+
+  /// Begins a search in `surface`, whose window should be the whole picture. Keeps what it needs: the surface
+  /// may change from then on. A search under way is dropped.
+  void begin(const Surface& surface) noexcept;
+  /// As above, but looks for the object near `pose` (camera <- model) first, within `radius` metres.
+  void begin(const Surface& surface, const RigidTransform& pose, double radius) noexcept;
+
+  /// Works on for about `budget` units of about 1000 instructions, at least one slice (at most about 2000
+  /// units).
+  DetectState step(std::int64_t budget) noexcept;
+  [[nodiscard]] DetectState state() const noexcept { return state_; }
+  [[nodiscard]] std::size_t finalist_count() const noexcept { return finalist_count_; }
+  struct Candidate {
+    RigidTransform pose;
+    double score = -10;
+    PoseEvidence evidence;
+    double seamless = 0;
+  };
+  [[nodiscard]] const Candidate& finalist(std::size_t k) const noexcept { return finalists_[k]; }
+  /// The best pose so far; to be believed only in state found.
+  [[nodiscard]] const Detection& best() const noexcept { return best_; }
+
+ private:
+  enum class Phase : std::uint8_t { normals, sample, describe, match, propose, shortlist, settle };
+  struct Proposal {
+    std::uint16_t scene = 0;  // keypoint, or kFromHint
+    std::uint16_t model = 0;
+    float score = 0;
+  };
+  static constexpr std::size_t kShortlist = 96;  // proposals that are looked at closely
+  static constexpr std::size_t kFinalists = 12;  // poses that are refined in full
+
+  void begin_round() noexcept;
+  std::int64_t slice() noexcept;
+  std::int64_t slice_normals() noexcept;
+  std::int64_t slice_sample() noexcept;
+  std::int64_t slice_describe() noexcept;
+  std::int64_t slice_match() noexcept;
+  std::int64_t slice_propose() noexcept;
+  std::int64_t slice_shortlist() noexcept;
+  std::int64_t slice_settle() noexcept;
+  [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
+  void judge(Candidate& candidate, std::size_t count) const noexcept;
+  void keep(const Candidate& candidate) noexcept;
+  void decide() noexcept;
+  [[nodiscard]] bool same_place(const RigidTransform& a, const RigidTransform& b) const noexcept;
+
+  DetectSettings settings_;
+  ModelView model_;
+  double leaf_ = 0;                            // spacing of the scene points, metres
+  double coarse_ = 0, fine_ = 0, widest_ = 0;  // tolerances, metres
+  DepthSnapshot snapshot_;
+  UniformSampling sampling_;
+  PointGrid grid_;
+  ShotDescriber describer_;
+  DescriptorMatcher matcher_;
+
+  std::span<Point3f> lattice_points_;  // before sampling
+  std::span<Normal16> lattice_normals_;
+  std::span<Point3f> points_;  // oriented scene points
+  std::span<Normal16> normals_;
+  std::span<std::uint32_t> kept_;
+  std::span<std::uint32_t> order_;  // keypoints' points, in the order in which they are described
+  std::span<Point3f> key_points_;
+  std::span<Descriptor> descriptors_;
+  std::span<LocalFrame> frames_;
+  std::span<Match> matches_;
+  std::span<Proposal> proposals_;
+  std::array<Candidate, kFinalists> finalists_;
+
+  DetectState state_ = DetectState::idle;
+  Phase phase_ = Phase::normals;
+  bool hinted_ = false;
+  RigidTransform hint_;
+  double hint_radius_ = 0;
+  std::uint32_t round_ = 0;
+  std::size_t cursor_ = 0;  // within the phase
+  std::size_t point_count_ = 0;
+  std::size_t order_count_ = 0, order_next_ = 0;
+  std::size_t key_count_ = 0;  // of this round
+  std::size_t proposal_count_ = 0;
+  std::size_t shortlist_count_ = 0;
+  std::size_t finalist_count_ = 0;
+  Detection best_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,46 @@
+// How well a pose of the model explains a depth picture: agreement and free space.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/detect/depth_snapshot.hpp"
+#include "core/geometry/rigid_transform.hpp"
+#include "core/model/model_view.hpp"
+
+namespace pliant {
+
+/// Counts of model points that face the camera under a pose.
+struct PoseEvidence {
+  int facing = 0;        ///< all of the counts below
+  int agreeing = 0;      ///< lie on the observed surface, with its normal
+  int floating = 0;      ///< lie in front of the observed surface: impossible, the camera sees through them
+  int behind = 0;        ///< lie behind the observed surface: hidden by something
+  int outside = 0;       ///< lie outside the picture or where there is no reading
+  int crossing = 0;      ///< lie on the observed surface but with another normal
+  double agreement = 0;  ///< of the agreeing points, each with how closely it agrees, [0, 1]
+
+  /// agreement − 1.5 · floating − 0.3 · (behind, outside, crossing), as a share of the facing points: at
+  /// most 1. Something that floats is impossible, something hidden or unseen merely unlikely.
+  [[nodiscard]] double score() const noexcept {
+    if (facing == 0) return -10;
+    return (agreement - 1.5 * floating - 0.3 * (behind + outside + crossing)) / facing;
+  }
+};
+
+/// Looks model points [0, count) up in the snapshot under `pose` (camera <- model). A point lies on the
+/// surface seen at its pixel when it is off by less than `tolerance` + 3 σ of the depth there, at most `most`
+/// (metres, along the point's normal). How closely it agrees falls off with the square of the distance, and
+/// with the angle between the normals from 25° to none at 60°. Points seen at more than 80° from their normal
+/// are not counted.
+[[nodiscard]] PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot,
+                                         const RigidTransform& pose, std::size_t count, double tolerance,
+                                         double most) noexcept;
+
+/// Projective point-to-plane alignment (Chen, Medioni 1992; Blais, Levine 1995) of model points [0, count)
+/// from `pose`: `iterations` steps with a gate that narrows from `gate` (metres) to three times `tolerance` +
+/// 3 σ. False when too few points hold on to the surface; `pose` is then as good as it got.
+bool refine_pose(const ModelView& model, const DepthSnapshot& snapshot, std::size_t count, double gate,
+                 double tolerance, int iterations, RigidTransform& pose) noexcept;
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+// Six normal equations of a small rigid motion.
+#pragma once
+
+#include "core/geometry/rigid_transform.hpp"
+
+namespace pliant {
+
+/// Sums of w · row · rowᵀ and w · row · residual over point-to-plane rows (three of the turn, three of the
+/// shift).
+class NormalEquations6 {
+ public:
+  void add(const double (&row)[6], double residual, double weight) noexcept {
+    int k = 0;
+    for (int i = 0; i < 6; ++i) {
+      const double scaled = weight * row[i];
+      for (int j = 0; j <= i; ++j) a_[k++] += scaled * row[j];
+      b_[i] += scaled * residual;
+    }
+    weight_ += weight;
+  }
+  [[nodiscard]] double weight() const noexcept { return weight_; }
+
+  /// Solves with Tikhonov damping: `turn_damping` (m²) and `shift_damping` (1) per unit of summed weight.
+  /// False when the equations are singular all the same.
+  [[nodiscard]] bool solve(double turn_damping, double shift_damping, Vector3& turn,
+                           Vector3& shift) const noexcept;
+
+ private:
+  double a_[21] = {};  // lower triangle, row by row
+  double b_[6] = {};
+  double weight_ = 0;
+};
+
+}  // namespace pliant
