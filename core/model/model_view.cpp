@@ -1,6 +1,7 @@
 #include "core/model/model_view.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 namespace pliant {
@@ -74,11 +75,12 @@ const char* describe(ModelFault fault) noexcept {
   return "is not usable";
 }
 
-std::uint64_t model_checksum(std::span<const std::byte> data) noexcept {
+std::uint64_t model_checksum(std::span<const std::byte> image) noexcept {
   std::uint64_t hash = 0xcbf29ce484222325U;
-  for (std::size_t i = 0; i + 8 <= data.size(); i += 8) {
+  for (std::size_t i = 0; i + 8 <= image.size(); i += 8) {
+    if (i == offsetof(ModelHeader, checksum)) continue;
     std::uint64_t word = 0;
-    for (std::size_t k = 0; k < 8; ++k) word |= static_cast<std::uint64_t>(data[i + k]) << (8 * k);
+    for (std::size_t k = 0; k < 8; ++k) word |= static_cast<std::uint64_t>(image[i + k]) << (8 * k);
     hash = (hash ^ word) * 0x100000001b3U;
     hash ^= hash >> 29;  // carries high bits down, so that every bit of a word counts
   }
@@ -98,7 +100,7 @@ ModelFault ModelView::open(std::span<const std::byte> image, ModelView& view) no
   if (header->version < ModelHeader::kVersion) return ModelFault::older_version;
   if (header->bytes > image.size()) return ModelFault::truncated;
   if (header->bytes != image.size() || header->bytes % 8 != 0) return ModelFault::corrupt;
-  if (model_checksum(image.subspan(sizeof(ModelHeader))) != header->checksum) return ModelFault::corrupt;
+  if (model_checksum(image) != header->checksum) return ModelFault::corrupt;
   if (header->point_count > limits::kMaxModelPoints || header->keypoint_count > limits::kMaxModelKeypoints)
     return ModelFault::over_limit;
   if (header->point_count == 0 || header->keypoint_count > header->point_count || !header_is_sane(*header))

@@ -31,7 +31,7 @@ struct LocalFrame {
 };
 
 /// First bytes of a model image. Little-endian; offsets from the image's first byte, multiples of 64.
-/// The checksum is FNV-1a (64 bits, over 64-bit little-endian words) of everything behind the header.
+/// The checksum is FNV-1a (64 bits, over 64-bit little-endian words) of the whole image but itself.
 struct ModelHeader {
   static constexpr std::array<char, 8> kMagic = {'P', 'L', 'I', 'A', 'N', 'T', 'M', '\n'};
   static constexpr std::uint32_t kByteOrder = 0x01020304;
@@ -132,7 +132,7 @@ class ModelView {
   std::span<const LocalFrame> frames_;
 };
 
-/// The checksum of ModelHeader over `data`, whose size must be a multiple of eight.
-[[nodiscard]] std::uint64_t model_checksum(std::span<const std::byte> data) noexcept;
+/// ModelHeader::checksum of an image, whose size must be a multiple of eight.
+[[nodiscard]] std::uint64_t model_checksum(std::span<const std::byte> image) noexcept;
 
 }  // namespace pliant

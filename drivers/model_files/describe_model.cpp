@@ -1,0 +1,46 @@
+#include "drivers/model_files/describe_model.hpp"
+
+#include <fmt/format.h>
+
+namespace pliant {
+
+const char* describe(ModelHeader::Ambiguity ambiguity) noexcept {
+  switch (ambiguity) {
+    case ModelHeader::Ambiguity::none:
+      return "";
+    case ModelHeader::Ambiguity::sphere:
+      return "it is round like a sphere and looks the same however it is turned";
+    case ModelHeader::Ambiguity::plane:
+      return "it is flat like a plane and looks the same wherever it is shifted and turned in it";
+    case ModelHeader::Ambiguity::rotation:
+      return "it is round about an axis and looks the same however it is turned about it";
+    case ModelHeader::Ambiguity::translation:
+      return "it looks the same when shifted along itself";
+    case ModelHeader::Ambiguity::featureless:
+      return "it has too little shape to tell where it is";
+  }
+  return "";
+}
+
+std::string describe_model(const ModelView& model) {
+  const ModelHeader& h = model.header();
+  const auto ambiguity = static_cast<ModelHeader::Ambiguity>(h.ambiguity);
+  std::string text;
+  text += fmt::format("version: {}\n", h.version);
+  text += fmt::format("points: {}\n", h.point_count);
+  text += fmt::format("keypoints: {}\n", h.keypoint_count);
+  text += fmt::format("bytes: {}\n", h.bytes);
+  text += fmt::format("spacing: {:.2f} mm\n", 1000 * h.spacing);
+  text += fmt::format("extent: {:.1f} x {:.1f} x {:.1f} mm\n", 1000 * (h.highest[0] - h.lowest[0]),
+                      1000 * (h.highest[1] - h.lowest[1]), 1000 * (h.highest[2] - h.lowest[2]));
+  text += fmt::format("centre: {:.4f} {:.4f} {:.4f} m\n", h.centre[0], h.centre[1], h.centre[2]);
+  text += fmt::format("descriptor radius: {:.1f} mm\n", 1000 * h.support_radius);
+  text += fmt::format("surface: {}\n", (h.flags & ModelHeader::kClosedSurface) != 0 ? "closed" : "open");
+  if ((h.flags & ModelHeader::kFrontOnly) != 0) text += "back: unknown\n";
+  text += model.characterisable()
+              ? fmt::format("characterisable: yes ({:.2f})\n", h.characterisability)
+              : fmt::format("characterisable: no ({:.2f}): {}\n", h.characterisability, describe(ambiguity));
+  return text;
+}
+
+}  // namespace pliant
