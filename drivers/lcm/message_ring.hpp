@@ -33,34 +33,40 @@ class MessageRing {
 
   /// Producer: copies the messages into a slot. False when they are larger than a slot.
   [[nodiscard]] bool push(std::span<const MessageBody> bodies, std::int64_t utime) noexcept {
-    Slot* const slot = claim_for_writing();
-    if (slot == nullptr) return false;
+    std::size_t needed = 0;
+    for (const MessageBody& body : bodies) needed += body.bytes.size();
+    if (bodies.size() > slots_.front().bodies.size() || needed > slots_.front().bytes.size()) return false;
+
+    std::uint64_t sequence = head_.load(std::memory_order_relaxed) + 1;
+    while (!claim_for_writing(slot_of(sequence))) ++sequence;
+    Slot& slot = slot_of(sequence);
     std::size_t used = 0;
-    bool fits = bodies.size() <= slot->bodies.size();
-    for (std::size_t i = 0; fits && i < bodies.size(); ++i) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
       const auto& bytes = bodies[i].bytes;
-      fits = bytes.size() <= slot->bytes.size() - used;
-      if (!fits) break;
-      if (!bytes.empty()) std::memcpy(slot->bytes.data() + used, bytes.data(), bytes.size());
-      slot->bodies[i] = {bodies[i].kind,
-                         std::span<const std::uint8_t>(slot->bytes).subspan(used, bytes.size())};
+      if (!bytes.empty()) std::memcpy(slot.bytes.data() + used, bytes.data(), bytes.size());
+      slot.bodies[i] = {bodies[i].kind,
+                        std::span<const std::uint8_t>(slot.bytes).subspan(used, bytes.size())};
       used += bytes.size();
     }
-    slot->count = fits ? bodies.size() : 0;
-    slot->utime = utime;
-    slot->state.store(fits ? filled(++sequence_) : kFree, std::memory_order_release);
-    return fits;
+    slot.count = bodies.size();
+    slot.utime = utime;
+    slot.state.store(filled(sequence), std::memory_order_release);
+    head_.store(sequence, std::memory_order_release);
+    return true;
   }
 
   /// Consumer: the oldest group, to be given back with release(); false when there is none.
   [[nodiscard]] bool take(Group& group) noexcept {
-    for (std::size_t tries = 0; tries <= slots_.size(); ++tries) {
-      std::uint64_t state = 0;
-      Slot* const slot = oldest(state);
-      if (slot == nullptr) return false;
-      if (slot->state.compare_exchange_strong(state, kTaken, std::memory_order_acquire)) {
-        taken_ = slot;
-        group = {std::span<const MessageBody>(slot->bodies).first(slot->count), slot->utime};
+    const std::uint64_t head = head_.load(std::memory_order_acquire);
+    const std::uint64_t count = slots_.size();
+    for (next_ = std::max(next_, head < count ? 1 : head - count + 1); next_ <= head;) {
+      Slot& slot = slot_of(next_);
+      std::uint64_t expected = filled(next_++);
+      // Fails where that number was passed over or its group gave way.
+      if (slot.state.compare_exchange_strong(expected, kTaken, std::memory_order_acquire,
+                                             std::memory_order_relaxed)) {
+        taken_ = &slot;
+        group = {std::span<const MessageBody>(slot.bodies).first(slot.count), slot.utime};
         return true;
       }
     }
@@ -75,7 +81,8 @@ class MessageRing {
   [[nodiscard]] std::int64_t gave_way() const noexcept { return gave_way_.load(std::memory_order_relaxed); }
 
  private:
-  // A slot's state: free, in one thread's hands, or filled with a sequence number from 2 on.
+  // A slot's state: free, in one thread's hands, or filled with the group of a number. Group number n stands
+  // in slot n modulo their count, numbers from 1 on.
   static constexpr std::uint64_t kFree = 0;
   static constexpr std::uint64_t kTaken = 1;
   static constexpr std::uint64_t filled(std::uint64_t sequence) noexcept { return sequence + 1; }
@@ -87,43 +94,30 @@ class MessageRing {
     std::size_t count = 0;
     std::int64_t utime = 0;
   };
+  [[nodiscard]] Slot& slot_of(std::uint64_t sequence) noexcept { return slots_[sequence % slots_.size()]; }
 
-  [[nodiscard]] Slot* oldest(std::uint64_t& state) noexcept {
-    Slot* found = nullptr;
-    for (Slot& slot : slots_) {
-      const std::uint64_t seen = slot.state.load(std::memory_order_relaxed);
-      if (seen > kTaken && (found == nullptr || seen < state)) {
-        found = &slot;
-        state = seen;
-      }
+  /// False where the consumer has the slot. It has one at a time and only takes filled ones, so trying one
+  /// slot after the other ends within one round.
+  [[nodiscard]] bool claim_for_writing(Slot& slot) noexcept {
+    // Acquire: the consumer's reading of this slot is over.
+    std::uint64_t state = slot.state.load(std::memory_order_acquire);
+    if (state == kTaken) return false;
+    if (state == kFree) {
+      slot.state.store(kTaken, std::memory_order_relaxed);
+      return true;
     }
-    return found;
-  }
-
-  /// A free slot, else the oldest filled one. Each failed exchange means that the consumer took that slot and
-  /// so gave its former one back: the next look finds one.
-  [[nodiscard]] Slot* claim_for_writing() noexcept {
-    for (std::size_t tries = 0; tries <= slots_.size(); ++tries) {
-      for (Slot& slot : slots_) {
-        // Acquire: the consumer's reading of this slot is over.
-        if (slot.state.load(std::memory_order_acquire) == kFree) {
-          slot.state.store(kTaken, std::memory_order_relaxed);
-          return &slot;
-        }
-      }
-      std::uint64_t state = 0;
-      Slot* const slot = oldest(state);
-      if (slot != nullptr && slot->state.compare_exchange_strong(state, kTaken, std::memory_order_acquire)) {
-        gave_way_.fetch_add(1, std::memory_order_relaxed);
-        return slot;
-      }
+    if (!slot.state.compare_exchange_strong(state, kTaken, std::memory_order_acquire,
+                                            std::memory_order_relaxed)) {
+      return false;
     }
-    return nullptr;
+    gave_way_.fetch_add(1, std::memory_order_relaxed);
+    return true;
   }
 
   std::vector<Slot> slots_;
-  std::uint64_t sequence_ = 0;  // producer's
-  Slot* taken_ = nullptr;       // consumer's
+  std::atomic<std::uint64_t> head_{0};  // number of the newest group
+  std::uint64_t next_ = 1;              // consumer's: the number it looks for
+  Slot* taken_ = nullptr;               // consumer's
   std::atomic<std::int64_t> gave_way_{0};
 };
 

@@ -73,9 +73,12 @@ TEST(MessageRing, RefusesWhatIsLargerThanASlot) {
   EXPECT_FALSE(push_number(narrow, 1));
 }
 
-TEST(MessageRing, TwoThreadsSeeWholeGroupsInAscendingOrder) {
+class MessageRingSlots : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(MessageRingSlots, TwoThreadsSeeWholeGroupsInAscendingOrder) {
+  const std::size_t slots = GetParam();
   constexpr std::int64_t kGroups = 100000;
-  MessageRing ring(3, 2, 64);
+  MessageRing ring(slots, 2, 64);
   std::atomic<bool> done{false};
   std::thread producer([&] {
     for (std::int64_t number = 1; number <= kGroups; ++number) {
@@ -104,6 +107,8 @@ TEST(MessageRing, TwoThreadsSeeWholeGroupsInAscendingOrder) {
   EXPECT_EQ(last, kGroups) << "the newest is never given up";
   EXPECT_EQ(taken + ring.gave_way(), kGroups);
 }
+
+INSTANTIATE_TEST_SUITE_P(Few, MessageRingSlots, ::testing::Values(3, 4, 7));
 
 }  // namespace
 }  // namespace pliant
