@@ -15,6 +15,13 @@ constexpr std::size_t kAlignPoints = 400;      // full refinement
 constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise of a fitted normal (2-4°)
                                      // averaged over a support
 
+// What a pose must score. Poses of absent objects reach 0.16 where the noise is narrow against the object's
+// relief, rarely 0.25 where it is not, and then several do so in different places: a lone one is believed
+// earlier.
+constexpr double kConvincing = 0.25;
+constexpr double kCertain = 0.45;
+constexpr double kRivalShare = 0.5;
+
 Vector3 to_vector(const Point3f& p) noexcept {
   return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
 }
@@ -260,7 +267,7 @@ void FrameDetector::judge(Candidate& candidate, std::size_t count) const noexcep
   candidate.score = candidate.evidence.score();
   candidate.seamless = 0;
   if (candidate.score <= 0) return;
-  candidate.seamless = seam_evidence(model_, snapshot_, candidate.pose, kEvidencePoints, fine_).share();
+  candidate.seamless = seam_evidence(model_, snapshot_, candidate.pose, kEvidencePoints, 0.5 * fine_).share();
   candidate.score -= candidate.seamless;
 }
 
@@ -299,7 +306,7 @@ std::int64_t FrameDetector::slice_shortlist() noexcept {
 std::int64_t FrameDetector::slice_settle() noexcept {
   if (cursor_ < finalist_count_) {
     Candidate& candidate = finalists_[cursor_++];
-    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.5 * fine_, 8, candidate.pose);
+    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.1 * fine_, 12, candidate.pose);
     judge(candidate, kEvidencePoints);
   }
   if (cursor_ >= finalist_count_) decide();
@@ -320,7 +327,8 @@ void FrameDetector::decide() noexcept {
       if (!same_place(finalists_[k].pose, best_.pose))
         best_.rival = std::max(best_.rival, finalists_[k].score);
   }
-  const bool convincing = best_.score > 0.25;
+  const bool alone = best_.rival <= kRivalShare * best_.score;
+  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && alone);
   if (convincing) {
     state_ = DetectState::found;
   } else if (++round_ < settings_.rounds && order_next_ < order_count_) {

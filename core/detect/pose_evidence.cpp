@@ -12,7 +12,8 @@ namespace {
 
 constexpr float kFacing = 0.1736F * 0.1736F;  // cos² 80°
 constexpr float kSameNormal = 0.7071F;        // cos 45°
-constexpr float kNear = 0.05F;                // metres; nearer points have no pixel
+constexpr double kResolvable = 0.06;  // of the model's radius; noise (3 σ) wider than that hides relief
+constexpr float kNear = 0.05F;        // metres; nearer points have no pixel
 
 }  // namespace
 
@@ -20,6 +21,7 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
                            std::size_t count, double tolerance, double most) noexcept {
   const FastTransform fast(pose);
   const auto widest = static_cast<float>(most);
+  const auto resolvable = static_cast<float>(kResolvable * model.radius());
   const auto base = static_cast<float>(tolerance);
   PoseEvidence evidence;
   count = std::min(count, model.size());
@@ -41,7 +43,8 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
     }
     const float off = static_cast<float>(reading) * 0.000125F - p.z;
     const float along = std::fabs(facing * off / p.z);
-    const float limit = std::min(base + 3 * sigma_at(snapshot.sensor(), p.z), widest);
+    const float noise = 3 * sigma_at(snapshot.sensor(), p.z);
+    const float limit = std::min(base + noise, widest);
     if (along <= limit) {
       const Normal16& seen = snapshot.normal(u, v);
       const float cosine = (n.x * static_cast<float>(seen.x) + n.y * static_cast<float>(seen.y) +
@@ -53,7 +56,8 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
       if (alike > 0) {
         ++evidence.agreeing;
         const float ratio = along / limit;
-        evidence.agreement += static_cast<double>(alike * (1 - ratio * ratio));
+        const float telling = noise > resolvable ? resolvable / noise : 1;
+        evidence.agreement += static_cast<double>(telling * alike * (1 - ratio * ratio));
       } else {
         ++evidence.crossing;
       }

@@ -12,6 +12,8 @@ namespace {
 constexpr int kSide = 32;        // cells
 constexpr float kReach = 1.35F;  // half of the grid in model radii
 
+constexpr float kAlike = 0.82F;  // cos 35°: what the noise of two fitted normals leaves of one direction
+
 struct Cell {
   float depth = 0;  // of the nearest point in it, 0: empty
   Point3f point, normal;
@@ -31,9 +33,9 @@ bool look(const DepthSnapshot& snapshot, const Point3f& at, Point3f& point, Poin
 /// Both points lie on one smooth surface: alike normals, and the second on the first's tangent plane.
 bool continues(const DepthSnapshot& snapshot, float tolerance, const Point3f& a, const Point3f& a_normal,
                const Point3f& b, const Point3f& b_normal) noexcept {
-  if (dot(a_normal, b_normal) < 0.7071F) return false;
+  if (dot(a_normal, b_normal) < kAlike) return false;
   const Point3f gap = {b.x - a.x, b.y - a.y, b.z - a.z};
-  return std::fabs(dot(gap, a_normal)) <= tolerance + 3 * sigma_at(snapshot.sensor(), b.z);
+  return std::fabs(dot(gap, a_normal)) <= tolerance + 2 * sigma_at(snapshot.sensor(), b.z);
 }
 
 }  // namespace

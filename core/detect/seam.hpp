@@ -18,7 +18,7 @@ struct SeamEvidence {
 };
 
 /// Draws the outline of model points [0, count) under `pose` (camera <- model) on a coarse grid whose cells
-/// span about the points' spacing, and looks at the cells around it. `tolerance`: metres, beside 3 σ.
+/// span about the points' spacing, and looks at the cells around it. `tolerance`: metres, beside 2 σ.
 [[nodiscard]] SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot,
                                          const RigidTransform& pose, std::size_t count,
                                          double tolerance) noexcept;
