@@ -38,6 +38,9 @@ class Tracker {
   /// How much work a frame may cost: 1 (all) down to 0 (least). Points and iterations shrink by rule.
   void set_work_level(double level) noexcept;
 
+  /// The next frame looks for the object near `pose` (camera <- model) instead of searching for it.
+  void start_from(const RigidTransform& pose) noexcept;
+
   /// Forgets the object: the next frame searches everywhere.
   void reset() noexcept;
 

@@ -1,7 +1,9 @@
 #include "core/camera/surface.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "core/fixed/integer_root.hpp"
@@ -144,7 +146,7 @@ int Surface::normal_step(std::uint16_t z8, double metres) const noexcept {
   return std::clamp(static_cast<int>(metres * kDepthUnitsPerMetre * camera_.fx / z8 + 0.5), 1, 8);
 }
 
-bool Surface::normal(int u, int v, int step, Normal16& out) const noexcept {
+bool Surface::raw_normal(int u, int v, int step, IntPoint& out) const noexcept {
   const std::uint16_t centre = depth(u, v);
   if (centre == 0) return false;
   const std::int32_t limit = discontinuity(centre) * step;
@@ -161,19 +163,35 @@ bool Surface::normal(int u, int v, int step, Normal16& out) const noexcept {
   const std::int64_t hx = b.x - a.x, hy = b.y - a.y, hz = b.z - a.z;
   const std::int64_t wx = d.x - c.x, wy = d.y - c.y, wz = d.z - c.z;
   // down × right points towards the camera (x right, y down, z forward)
-  std::int64_t nx = wy * hz - wz * hy, ny = wz * hx - wx * hz, nz = wx * hy - wy * hx;
-  std::int64_t largest = std::max({std::abs(nx), std::abs(ny), std::abs(nz)});
-  int shift = 0;
-  while (shift < 40 && (largest >> shift) >= 16384) ++shift;
-  nx >>= shift;
-  ny >>= shift;
-  nz >>= shift;
-  const auto square = static_cast<std::uint32_t>(nx * nx + ny * ny + nz * nz);
-  const auto norm = static_cast<std::int64_t>(integer_sqrt(square));
-  if (norm < 16) return false;
-  out = {static_cast<std::int16_t>(nx * 16384 / norm), static_cast<std::int16_t>(ny * 16384 / norm),
-         static_cast<std::int16_t>(nz * 16384 / norm), 0};
+  const std::int64_t nx = wy * hz - wz * hy, ny = wz * hx - wx * hz, nz = wx * hy - wy * hx;
+  const std::int64_t largest = std::max({std::abs(nx), std::abs(ny), std::abs(nz)});
+  const int bits = 64 - std::countl_zero(static_cast<std::uint64_t>(largest));
+  const int shift = std::max(0, bits - 14);
+  out = {static_cast<std::int32_t>(nx >> shift), static_cast<std::int32_t>(ny >> shift),
+         static_cast<std::int32_t>(nz >> shift)};
+  return largest >= 16;
+}
+
+bool Surface::normal(int u, int v, int step, Normal16& out) const noexcept {
+  IntPoint n;
+  if (!raw_normal(u, v, step, n)) return false;
+  const auto square = static_cast<std::uint32_t>(n.x * n.x + n.y * n.y + n.z * n.z);
+  const auto norm = static_cast<std::int32_t>(integer_sqrt(square));
+  if (norm == 0) return false;
+  out = {static_cast<std::int16_t>(n.x * 16384 / norm), static_cast<std::int16_t>(n.y * 16384 / norm),
+         static_cast<std::int16_t>(n.z * 16384 / norm), 0};
   return true;
+}
+
+bool Surface::faces(int u, int v, int step, const IntPoint& direction) const noexcept {
+  IntPoint n;
+  if (!raw_normal(u, v, step, n)) return true;
+  const std::int64_t dot = std::int64_t{n.x} * direction.x + std::int64_t{n.y} * direction.y +
+                           std::int64_t{n.z} * direction.z;  // |n| · cos · 2^14
+  if (dot <= 0) return false;
+  const std::int64_t square = std::int64_t{n.x} * n.x + std::int64_t{n.y} * n.y + std::int64_t{n.z} * n.z;
+  const std::int64_t cosine = dot >> 13;  // 2 · |n| · cos
+  return cosine * cosine >= square;
 }
 
 }  // namespace pliant

@@ -66,6 +66,8 @@ class Surface {
   /// Unit normal towards the camera from depth differences `step` pixels to each side (one-sided where the
   /// other side is missing or across a discontinuity). False when there is none.
   [[nodiscard]] bool normal(int u, int v, int step, Normal16& out) const noexcept;
+  /// Does the surface at the pixel face along `direction` (unit, Q14) within 60°? Without a normal there: true.
+  [[nodiscard]] bool faces(int u, int v, int step, const IntPoint& direction) const noexcept;
   /// The step for normal() that spans about `metres` at depth z8.
   [[nodiscard]] int normal_step(std::uint16_t z8, double metres) const noexcept;
 
@@ -87,6 +89,8 @@ class Surface {
   static constexpr int kDepthTableShift = 8;  // a table entry spans 32 mm
   static constexpr int kDepthTableSize = 256;
 
+  /// Normal of any length, largest component below 2^14. False when there is none.
+  [[nodiscard]] bool raw_normal(int u, int v, int step, IntPoint& out) const noexcept;
   void convert_row(const std::uint16_t* raw, int v) noexcept;
   void clean_row(int v) noexcept;
   void smooth_row(int v) noexcept;

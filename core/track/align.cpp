@@ -1,0 +1,132 @@
+#include "core/track/align.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace pliant {
+
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr int kBins = 512;  // of |residual|, 1/16 mm each
+
+/// Counts, centres and the histogram of |residual| of one region.
+struct Spread {
+  std::uint32_t count = 0;
+  std::int64_t x = 0, y = 0, z = 0;
+  std::array<std::uint32_t, kBins> bins{};
+
+  void add(const Correspondence& c) noexcept {
+    ++count;
+    x += c.point.x;
+    y += c.point.y;
+    z += c.point.z;
+    ++bins[static_cast<std::size_t>(std::min(std::abs(c.residual) >> 4, kBins - 1))];
+  }
+  [[nodiscard]] std::int32_t median() const noexcept {
+    std::uint32_t below = 0;
+    for (int i = 0; i < kBins; ++i) {
+      below += bins[static_cast<std::size_t>(i)];
+      if (2 * below >= count) return i + 1;
+    }
+    return kBins;
+  }
+};
+
+/// Tukey's weight (1 − (r/c)²)² in Q8; both in the same unit, |r| < c < 2^18.
+std::int32_t tukey(std::int32_t residual, std::int32_t limit) noexcept {
+  const std::int32_t ratio = (std::abs(residual) << 8) / limit;  // Q8
+  if (ratio >= 256) return 0;
+  const std::int32_t rest = 65536 - ratio * ratio;  // Q16
+  return ((rest >> 8) * (rest >> 8)) >> 8;
+}
+
+Matrix6 symmetric(const PlaneMoments& m, const Vector6& scale) noexcept {
+  Matrix6 a;
+  std::size_t k = 0;
+  for (int row = 0; row < 6; ++row)
+    for (int column = row; column < 6; ++column) {
+      a(row, column) = static_cast<double>(m.a[k++]) * scale[row] * scale[column];
+      a(column, row) = a(row, column);
+    }
+  return a;
+}
+
+/// What turns `pose` into `target`, about `centre`: rotation vector and translation.
+Vector6 difference(const RigidTransform& target, const RigidTransform& pose, const Vector3& centre) noexcept {
+  const RigidTransform step = target * pose.inverse();
+  Vector6 x;
+  x.head<3>() = small_vector_from_rotation(step.rotation);
+  x.tail<3>() = step * centre - centre;
+  return x;
+}
+
+}  // namespace
+
+void align(const ModelTables& model, const Surface& surface, const AlignSettings& settings,
+           const PointState& points, RegionSet& regions) noexcept {
+  (void)model;
+  const auto all = points.correspondences.first(points.correspondence_count);
+  std::array<Spread, limits::kMaxRegions> spreads{};
+  for (const Correspondence& c : all) spreads[static_cast<std::size_t>(c.region)].add(c);
+
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    TrackedRegion& region = regions[k];
+    const Spread& spread = spreads[k];
+    if (!region.alive || spread.count < kFewestCorrespondences) continue;
+    if (settings.only_region >= 0 && settings.only_region != static_cast<std::int8_t>(k)) continue;
+    const IntPoint centre{static_cast<std::int32_t>(spread.x / spread.count),
+                          static_cast<std::int32_t>(spread.y / spread.count),
+                          static_cast<std::int32_t>(spread.z / spread.count)};
+    // 1.4826 · median is σ of a normal distribution; Tukey's constant is 4.685
+    const std::int32_t noise = surface.sigma(centre.z);
+    region.scale = std::max((spread.median() * 95) >> 6, noise / 2);
+    const std::int32_t limit =
+        std::clamp((region.scale * 300) >> 6, 3 * noise, std::max(settings.widest, 3 * noise)) * 16;
+
+    PlaneMoments moments;
+    for (const Correspondence& c : all) {
+      if (c.region != static_cast<std::int8_t>(k)) continue;
+      const std::int32_t w = tukey(c.residual, limit);
+      if (w == 0) continue;
+      const std::int32_t px = c.point.x - centre.x, py = c.point.y - centre.y, pz = c.point.z - centre.z;
+      moments.add({(py * c.nz - pz * c.ny) >> 14, (pz * c.nx - px * c.nz) >> 14,
+                   (px * c.ny - py * c.nx) >> 14, c.nx, c.ny, c.nz},
+                  c.residual, w);
+    }
+    if (moments.rows < kFewestCorrespondences) continue;
+
+    Vector6 unit;
+    unit << 1 / kUnitsPerMetre, 1 / kUnitsPerMetre, 1 / kUnitsPerMetre, 1 / 16384.0, 1 / 16384.0, 1 / 16384.0;
+    constexpr double kWeight = 1 / 256.0, kResidual = 1 / 256000.0;
+    Matrix6 a = symmetric(moments, unit) * kWeight;
+    Vector6 b;
+    for (int i = 0; i < 6; ++i)
+      b[i] = static_cast<double>(moments.b[static_cast<std::size_t>(i)]) * unit[i] * kWeight * kResidual;
+    const double spread_metres = region.scale / kUnitsPerMetre;
+    const Vector3 centre_metres =
+        Vector3(centre.x / kUnitsPerMetre, centre.y / kUnitsPerMetre, centre.z / kUnitsPerMetre);
+    const Vector6 back = difference(region.predicted, region.pose, centre_metres);
+    for (int i = 0; i < 6; ++i) {
+      const double sigma = i < 3 ? settings.prior_rotation : settings.prior_translation;
+      const double information = spread_metres * spread_metres / (sigma * sigma);
+      a(i, i) += information;
+      b[i] += information * back[i];
+    }
+    const Vector6 x = a.ldlt().solve(b);
+    if (!(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
+    RigidTransform step;
+    step.rotation = rotation_from_small_vector(x.head<3>());
+    step.translation = centre_metres + Vector3(x.tail<3>()) - step.rotation * centre_metres;
+    region.pose = step * region.pose;
+    region.pose.rotation = orthonormalised(region.pose.rotation);
+    region.rms =
+        std::sqrt(static_cast<double>(moments.square) / static_cast<double>(moments.weight)) * kResidual;
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+// Projective association: every model point beside the reading of the pixel it falls on.
+#pragma once
+
+#include "core/track/track_state.hpp"
+
+namespace pliant {
+
+struct AssociateSettings {
+  std::size_t points = 0;        ///< the first so many model points are looked at: a uniform sampling
+  std::int32_t gate = 0;         ///< readings farther than this from the point are not taken, 1/16 mm
+  bool check_normals = true;     ///< readings whose surface faces another way are not taken
+  bool with_deformed = false;    ///< take points that count as deformed, too
+  std::int8_t only_region = -1;  ///< look at this region's points only; -1: all regions
+};
+
+/// Fills `points.correspondences` in the order of the model's points. Points that face away (beyond 75° from
+/// the line of sight), and those that count as deformed (unless `with_deformed`), are left out.
+void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
+               const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept;
+
+/// Signed distance of `reading` from `point` along the unit `normal` (Q14) in 1/256 mm.
+/// Overflow bound: |reading - point| <= 2^13 on each axis (512 mm).
+[[nodiscard]] inline std::int32_t plane_distance(const IntPoint& reading, const IntPoint& point,
+                                                 const IntPoint& normal) noexcept {
+  return (normal.x * (reading.x - point.x) + normal.y * (reading.y - point.y) +
+          normal.z * (reading.z - point.z) + 512) >>
+         10;
+}
+
+/// Does a surface at `point` with `normal` (Q14) face the camera at more than `least` (Q14, cosine)?
+[[nodiscard]] inline bool faces_camera(const IntPoint& point, const IntPoint& normal,
+                                       std::int32_t least) noexcept {
+  // |point| is taken as its largest coordinate, z, for the wide angles of a depth camera: an error below 1.3
+  const std::int32_t towards =
+      -(normal.x * (point.x >> 4) + normal.y * (point.y >> 4) + normal.z * (point.z >> 4));
+  return towards > 0 && towards / 16384 > ((least * (point.z >> 4)) >> 14);
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+// The model's surface in patches: what is decided about motion is decided for patches, not for single points.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/memory/workspace.hpp"
+#include "core/track/model_tables.hpp"
+
+namespace pliant {
+
+/// Most patches of a model; about 60 points each for a model of 6,000.
+inline constexpr std::size_t kMaxPatches = 96;
+
+/// A set of patches, one bit each.
+class PatchSet {
+ public:
+  [[nodiscard]] bool has(std::size_t p) const noexcept { return (words_[p >> 5] >> (p & 31) & 1U) != 0; }
+  void add(std::size_t p) noexcept { words_[p >> 5] |= 1U << (p & 31); }
+  [[nodiscard]] bool operator==(const PatchSet&) const noexcept = default;
+
+ private:
+  std::array<std::uint32_t, (kMaxPatches + 31) / 32> words_{};
+};
+
+/// Every point belongs to the patch of the seed that is nearest along the surface graph; the seeds are the
+/// first points of the model, a uniform sampling.
+struct PatchTables {
+  std::size_t count = 0;
+  std::span<std::uint8_t> patch_of;                ///< by model point
+  std::array<PatchSet, kMaxPatches> neighbours{};  ///< that share an edge of the graph
+
+  void lay_out(Workspace& workspace, std::size_t points) noexcept;
+  /// `queue`: scratch of the model's size.
+  void start(const ModelTables& model, std::span<std::uint16_t> queue) noexcept;
+};
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+#include "core/track/track_state.hpp"
+
+#include <algorithm>
+
+namespace pliant {
+
+void PointState::lay_out(Workspace& workspace, std::size_t points) noexcept {
+  home = workspace.take<std::int8_t>(points);
+  evidence = workspace.take<std::uint8_t>(points);
+  switching = workspace.take<std::uint8_t>(points);
+  rival = workspace.take<std::int8_t>(points);
+  sight = workspace.take<Sight>(points);
+  label = workspace.take<std::int8_t>(points);
+  match = workspace.take<std::int32_t>(points);
+  residual = workspace.take<std::int32_t>(points);
+  position = workspace.take<IntPoint>(points);
+  offset = workspace.take<IntPoint>(points);
+  group = workspace.take<std::int32_t>(points);
+  queue = workspace.take<std::uint16_t>(points);
+  correspondences = workspace.take<Correspondence>(points);
+}
+
+void PointState::reset() noexcept {
+  std::fill(home.begin(), home.end(), std::int8_t{0});
+  std::fill(evidence.begin(), evidence.end(), std::uint8_t{0});
+  std::fill(switching.begin(), switching.end(), std::uint8_t{0});
+  std::fill(rival.begin(), rival.end(), std::int8_t{-1});
+  std::fill(sight.begin(), sight.end(), Sight::none);
+  std::fill(label.begin(), label.end(), kNotObserved);
+  std::fill(match.begin(), match.end(), -1);
+  std::fill(residual.begin(), residual.end(), 0);
+  std::fill(position.begin(), position.end(), IntPoint{});
+  std::fill(offset.begin(), offset.end(), IntPoint{});
+  correspondence_count = 0;
+}
+
+}  // namespace pliant

@@ -1,0 +1,91 @@
+// What the tracker keeps from frame to frame, and the buffers of a frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/camera/surface.hpp"
+#include "core/geometry/rigid_transform.hpp"
+#include "core/limits.hpp"
+#include "core/track/model_tables.hpp"
+#include "core/track_result.hpp"
+
+namespace pliant {
+
+/// A region that is followed. Its slot in RegionSet is its id.
+struct TrackedRegion {
+  bool alive = false;
+  std::int8_t parent = -1;     ///< id, -1 for the base
+  RigidTransform pose;         ///< camera <- model
+  RigidTransform last_pose;    ///< of the last frame
+  RigidTransform predicted;    ///< of this frame, before alignment
+  RigidTransform motion;       ///< camera frame, from the last frame to this one
+  RigidTransform from_parent;  ///< parent's model frame <- this region's: how it moved against its parent
+  std::uint32_t points = 0;    ///< that bear its label in this frame
+  std::uint32_t members = 0;   ///< model points whose home it is
+  std::int32_t scale = 0;      ///< robust spread of its residuals, 1/16 mm
+  double rms = 0;              ///< metres
+  int frames_alike = 0;        ///< frames in a row in which it moved like its parent
+  int frames_unseen = 0;       ///< frames in a row without enough readings
+};
+
+using RegionSet = std::array<TrackedRegion, limits::kMaxRegions>;
+
+/// How the last look at a point went.
+enum class Sight : std::uint8_t {
+  none,      ///< turned away, outside the picture, no reading
+  agrees,    ///< the surface is where its region puts it
+  in_front,  ///< the camera sees through it: the surface lies behind
+  behind     ///< the surface lies before it: hidden, or bulged
+};
+
+/// One model point beside the reading at its pixel, under its region's pose.
+struct Correspondence {
+  IntPoint point;           ///< where the pose puts the point, camera frame, 1/16 mm
+  std::int16_t nx, ny, nz;  ///< its normal there, Q14
+  std::uint16_t index;      ///< of the model point
+  std::int32_t residual;    ///< signed distance of the reading along the normal, 1/256 mm
+  std::int8_t region;
+};
+
+/// Per-point arrays and buffers; all of the model's size unless said.
+struct PointState {
+  std::span<std::int8_t> home;  ///< region the point belongs to
+  std::span<std::uint8_t>
+      evidence;  ///< frames' worth of evidence that it is off its region [0, kEvidenceMax]
+  std::span<std::uint8_t> switching;  ///< evidence that it belongs to `rival`
+  std::span<std::int8_t> rival;       ///< region that explains it better
+  std::span<Sight> sight;
+  std::span<std::int8_t> label;
+  std::span<std::int32_t> match;
+  std::span<std::int32_t> residual;  ///< 1/16 mm, signed, along the normal
+  std::span<IntPoint> position;      ///< camera frame, 1/16 mm
+  std::span<IntPoint> offset;      ///< of a deformed point from where its home puts it, camera frame, 1/16 mm
+  std::span<std::int32_t> group;   ///< scratch: component or distance
+  std::span<std::uint16_t> queue;  ///< scratch: breadth-first search
+  std::span<Correspondence> correspondences;
+  std::size_t correspondence_count = 0;
+
+  void lay_out(Workspace& workspace, std::size_t points) noexcept;
+  /// Everything belongs to the base and nothing is deformed.
+  void reset() noexcept;
+};
+
+inline constexpr std::uint8_t kEvidenceMax = 12;
+/// Evidence from which a point counts as deformed; three clear frames bring it there.
+inline constexpr std::uint8_t kEvidenceDeformed = 6;
+
+/// Lengths that a frame's decisions rest on, from the model's spacing and the sensor's noise.
+struct Tolerance {
+  const Surface* surface = nullptr;
+  std::int32_t spacing = 0;  ///< 1/16 mm
+  /// How far off its region's surface a point is deformed: the larger of one spacing and 4 σ of the depth
+  /// there.
+  [[nodiscard]] std::int32_t deformed(std::int32_t z16) const noexcept {
+    const std::int32_t four_sigma = 4 * surface->sigma(z16);
+    return four_sigma > spacing ? four_sigma : spacing;
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,166 @@
+#include "core/tracker.hpp"
+
+#include <new>
+
+#include "core/tracker_state.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// A followed object may fail this many frames in a row before it is searched for everywhere: it is lost
+/// meanwhile.
+constexpr int kFramesToReturn = 5;
+
+/// Work of the detector in one frame, in its units of about 1000 instructions.
+constexpr std::int64_t kSearchBudget = 40000;
+
+struct alignas(Workspace::kAlignment) StateStorage {
+  std::byte bytes[sizeof(TrackerState)];
+};
+
+void done(const TrackerState& s, Stage stage) noexcept {
+  if (s.observer.stage_done != nullptr) s.observer.stage_done(s.observer.context, stage);
+}
+
+bool usable(const TrackerState& s, const DepthFrame& frame) noexcept {
+  return frame.depth != nullptr && frame.width == s.camera.width && frame.height == s.camera.height &&
+         frame.stride >= frame.width;
+}
+
+/// Searches in bounded slices; the answer is for an earlier frame and is brought forward to this one.
+bool search(TrackerState& s, const DepthFrame& frame) noexcept {
+  if (!s.search_begun) {
+    s.surface.build(frame, {0, 0, s.camera.width, s.camera.height});
+    s.detector.begin(s.surface);
+    s.search_begun = true;
+  }
+  const DetectState progress = s.detector.step(kSearchBudget);
+  if (progress == DetectState::working) return false;
+  s.search_begun = false;
+  return progress == DetectState::found && acquire(s, frame, s.detector.best().pose);
+}
+
+}  // namespace
+
+void TrackerState::lay_out(Workspace& workspace, const ModelView& model_view,
+                           const Intrinsics& intrinsics) noexcept {
+  const std::size_t count = model_view.size();
+  const auto pixels =
+      static_cast<std::size_t>(intrinsics.width) * static_cast<std::size_t>(intrinsics.height);
+  tables.lay_out(workspace, count);
+  surface.lay_out(workspace, intrinsics);
+  patches.lay_out(workspace, count);
+  points.lay_out(workspace, count);
+  taken_pixels = workspace.take<std::uint32_t>((pixels + 31) / 32);
+  positions = workspace.take<Point3f>(count);
+  residuals = workspace.take<float>(count);
+  detector.lay_out(workspace, model_view, intrinsics, DetectSettings());
+}
+
+std::size_t Tracker::workspace_bytes(const ModelView& model, const Intrinsics& camera,
+                                     const TrackSettings& settings) noexcept {
+  (void)settings;
+  Workspace measure;
+  (void)measure.take<StateStorage>(1);
+  TrackerState state;
+  state.lay_out(measure, model, camera);
+  return measure.used();
+}
+
+const char* Tracker::start(const ModelView& model, const Intrinsics& camera, const SensorDescription& sensor,
+                           const TrackSettings& settings, std::span<std::byte> block) noexcept {
+  state_ = nullptr;
+  if (model.empty()) return "there is no model";
+  if (const char* fault = intrinsics_fault(camera)) return fault;
+  if (model.header().highest[0] - model.header().lowest[0] > 2 * limits::kMaxModelHalfExtent ||
+      model.header().highest[1] - model.header().lowest[1] > 2 * limits::kMaxModelHalfExtent ||
+      model.header().highest[2] - model.header().lowest[2] > 2 * limits::kMaxModelHalfExtent)
+    return "the model is larger than 4 m; was it built with --units mm?";
+  if (settings.max_regions < 1 || settings.max_regions > limits::kMaxRegions)
+    return "max_regions must be 1 to 8";
+  Workspace workspace(block);
+  const std::span<StateStorage> storage = workspace.take<StateStorage>(1);
+  if (storage.empty()) return "the tracker's block of memory is too small";
+  auto* s = new (storage.data()) TrackerState();  // placement: no heap
+  s->lay_out(workspace, model, camera);
+  if (workspace.exhausted()) return "the tracker's block of memory is too small";
+  s->model = model;
+  s->camera = camera;
+  s->sensor = sensor;
+  s->settings = settings;
+  s->tables.start(s->model);
+  s->surface.start(camera, sensor);
+  s->projector.start(camera);
+  s->tolerance = {&s->surface, s->tables.spacing};
+  s->patches.start(s->tables, s->points.queue);
+  s->points.reset();
+  s->detector.start(s->model, camera, sensor, settings.kernels);
+  state_ = s;
+  return nullptr;
+}
+
+const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
+  TrackerState& s = *state_;
+  s.result = TrackResult();
+  s.result.utime = frame.utime;
+  s.result.frame = frame.number;
+  s.result.state = s.was_tracked ? TrackState::lost : TrackState::searching;
+  s.result.frame_used = usable(s, frame);
+  if (!s.result.frame_used) return s.result;
+
+  bool tracked = false;
+  if (s.following) {
+    s.before = s.regions;
+    predict_regions(s);
+    done(s, Stage::predict);
+    observe_surface(s, frame);  // vertices and normals of the predicted window
+    done(s, Stage::surface);
+    align_regions(s);  // correspondences and a rigid transform for every region
+    label_points(s);   // the inlier test
+    done(s, Stage::label);
+    regroup_outliers(s);  // the same again on the outliers: a chain of rigid transforms
+    done(s, Stage::regroup);
+    match_deformed(s);  // what is left: a radius search
+    done(s, Stage::deform);
+    tracked = judge(s);
+    s.frames_failed = tracked ? 0 : s.frames_failed + 1;
+    if (!tracked) s.regions = s.before;
+    if (s.frames_failed > kFramesToReturn) s.following = false;
+  } else {
+    tracked = search(s, frame);
+    done(s, Stage::detect);
+    s.following = tracked;
+    s.frames_failed = 0;
+  }
+  if (tracked) publish_tracked(s);
+  return s.result;
+}
+
+void Tracker::observe(const StageObserver& observer) noexcept {
+  state_->observer = observer;
+}
+
+void Tracker::set_work_level(double level) noexcept {
+  state_->work_level = level < 0 ? 0 : level > 1 ? 1 : level;
+}
+
+void Tracker::start_from(const RigidTransform& pose) noexcept {
+  TrackerState& s = *state_;
+  s.points.reset();
+  s.regions = RegionSet();
+  TrackedRegion& base = s.regions[0];
+  base.alive = true;
+  base.pose = base.last_pose = base.predicted = pose;
+  s.following = true;
+  s.search_begun = false;
+  s.frames_failed = 0;
+}
+
+void Tracker::reset() noexcept {
+  state_->following = false;
+  state_->search_begun = false;
+  state_->was_tracked = false;
+}
+
+}  // namespace pliant

@@ -1,0 +1,68 @@
+// All of the tracker's memory; lives at the front of its block.
+#pragma once
+
+#include "core/camera/surface.hpp"
+#include "core/detect/frame_detector.hpp"
+#include "core/track/label.hpp"
+#include "core/track/regroup.hpp"
+#include "core/track/track_state.hpp"
+#include "core/tracker.hpp"
+
+namespace pliant {
+
+struct TrackerState {
+  // What start() was given.
+  ModelView model;
+  Intrinsics camera;
+  SensorDescription sensor;
+  TrackSettings settings;
+  StageObserver observer;
+  double work_level = 1;
+
+  // Tables and buffers.
+  ModelTables tables;
+  Surface surface;
+  Projector projector;
+  Tolerance tolerance;
+  PatchTables patches;
+  PointState points;
+  FrameDetector detector;
+  std::span<std::uint32_t> taken_pixels;
+  std::span<Point3f> positions;
+  std::span<float> residuals;
+
+  // The object.
+  RegionSet regions;
+  RegionSet before;  // as they were before this frame, to return to when the frame fails
+  RegroupState regroup_state;
+  MotionSplit motion_split;
+  SightCounts counts;
+  bool following = false;     // regions hold a pose to go on from
+  bool was_tracked = false;   // ever
+  bool search_begun = false;  // the detector is at work on a frame
+  int frames_failed = 0;      // in a row, while following
+  double confidence = 0;
+
+  std::array<Region, limits::kMaxRegions> published{};
+  TrackResult result;
+
+  void lay_out(Workspace& workspace, const ModelView& model_view, const Intrinsics& intrinsics) noexcept;
+};
+
+/// The steps of a followed frame, in their order (tracker_steps.cpp).
+void observe_surface(TrackerState& s, const DepthFrame& frame) noexcept;
+void predict_regions(TrackerState& s) noexcept;
+void align_regions(TrackerState& s) noexcept;
+void label_points(TrackerState& s) noexcept;
+void regroup_outliers(TrackerState& s) noexcept;
+void match_deformed(TrackerState& s) noexcept;
+/// True when what is seen bears the pose out. Sets confidence.
+[[nodiscard]] bool judge(TrackerState& s) noexcept;
+
+/// Tries to take the object up at `pose` in this frame; true when what is seen bears it out.
+[[nodiscard]] bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept;
+
+/// Writes result from the state of a tracked frame.
+void publish_tracked(TrackerState& s) noexcept;
+
+}  // namespace pliant

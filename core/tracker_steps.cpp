@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/deform/radius_search.hpp"
+#include "core/track/align.hpp"
+#include "core/track/associate.hpp"
+#include "core/track/predict.hpp"
+#include "core/tracker_state.hpp"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::int32_t kReach = 40 * kUnitsPerMillimetre;  // room in the window: 1.2 m/s at 30 Hz
+constexpr std::int32_t kMotionGate =
+    24 * kUnitsPerMillimetre;  // how far off its prediction a point is looked for
+constexpr std::uint32_t kFewestAgreeing = 40;
+
+void finish_stage(const TrackerState& s, Stage stage) noexcept {
+  if (s.observer.stage_done != nullptr) s.observer.stage_done(s.observer.context, stage);
+}
+
+std::size_t share_of_points(const TrackerState& s, double share) noexcept {
+  const auto size =
+      static_cast<std::size_t>(share * (0.25 + 0.75 * s.work_level) * static_cast<double>(s.tables.size));
+  return std::min(std::max<std::size_t>(size, 400), s.tables.size);
+}
+
+std::uint32_t fewest_region_points(const TrackerState& s) noexcept {
+  return std::max<std::uint32_t>(40, static_cast<std::uint32_t>(s.tables.size / 64));
+}
+
+/// One round of association and alignment; readings farther off than `widest` weigh nothing.
+void round_of_alignment(TrackerState& s, std::size_t points, std::int32_t gate, std::int32_t widest,
+                        const AlignSettings& base = {}) noexcept {
+  AssociateSettings associate_settings;
+  associate_settings.points = points;
+  associate_settings.gate = gate;
+  associate(s.tables, s.surface, s.projector, s.regions, associate_settings, s.points);
+  finish_stage(s, Stage::associate);
+  AlignSettings align_settings = base;
+  align_settings.widest = widest;
+  align(s.tables, s.surface, align_settings, s.points, s.regions);
+  finish_stage(s, Stage::align);
+}
+
+/// The inlier test's limit at the base region's depth.
+std::int32_t inlier_limit(const TrackerState& s) noexcept {
+  const Vector3 where = s.regions[0].pose * s.tables.centre;
+  return s.tolerance.deformed(static_cast<std::int32_t>(where.z() * kUnitsPerMetre));
+}
+
+void count_regions(TrackerState& s) noexcept {
+  for (TrackedRegion& region : s.regions) region.points = 0;
+  std::array<std::int64_t, limits::kMaxRegions> squares{};
+  for (std::size_t i = 0; i < s.tables.size; ++i) {
+    if (s.points.label[i] < 0) continue;
+    const auto k = static_cast<std::size_t>(s.points.label[i]);
+    ++s.regions[k].points;
+    squares[k] += static_cast<std::int64_t>(s.points.residual[i]) * s.points.residual[i];
+  }
+  for (std::size_t k = 0; k < s.regions.size(); ++k) {
+    TrackedRegion& region = s.regions[k];
+    if (!region.alive) continue;
+    if (region.points > 0)
+      region.rms = std::sqrt(static_cast<double>(squares[k]) / region.points) / kUnitsPerMetre;
+    region.frames_unseen = region.points >= kFewestCorrespondences ? 0 : region.frames_unseen + 1;
+  }
+}
+
+}  // namespace
+
+void observe_surface(TrackerState& s, const DepthFrame& frame) noexcept {
+  s.surface.build(frame, predicted_window(s.tables, s.projector, s.points, s.regions,
+                                          kReach + s.tables.spacing * 4, s.camera.width, s.camera.height));
+}
+
+void predict_regions(TrackerState& s) noexcept {
+  predict(s.regions);
+}
+
+void align_regions(TrackerState& s) noexcept {
+  choose_still_or_moving(s.tables, s.surface, s.projector, s.points, 512, s.regions);
+  finish_stage(s, Stage::predict);
+  // Last rounds trust only what the inlier test will call rigid: a part that moved on must not drag the rest.
+  const std::int32_t inlier = inlier_limit(s);
+  round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, kMotionGate);
+  round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
+  round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
+  round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier);
+  for (TrackedRegion& region : s.regions)
+    if (region.alive) region.motion = region.pose * region.last_pose.inverse();
+}
+
+void label_points(TrackerState& s) noexcept {
+  s.counts = label(s.tables, s.surface, s.projector, s.regions, s.tolerance, s.points);
+}
+
+void regroup_outliers(TrackerState& s) noexcept {
+  RegroupSettings settings;
+  settings.max_regions = s.settings.max_regions;
+  settings.fewest_points = fewest_region_points(s);
+  AssociateSettings wide;  // all that may belong to a part which moves in its own way
+  wide.points = share_of_points(s, 0.5);
+  wide.gate = kMotionGate;
+  wide.with_deformed = true;
+  associate(s.tables, s.surface, s.projector, s.regions, wide, s.points);
+  const RegroupContext context{s.tables, s.patches, s.surface, s.projector, s.tolerance};
+  if (regroup(context, settings, s.regroup_state, s.motion_split, s.regions, s.points))
+    carry_homes_to_unseen(s.tables, s.points);
+  count_regions(s);
+  for (TrackedRegion& region : s.regions) {
+    if (!region.alive || region.parent < 0) continue;
+    const TrackedRegion& parent = s.regions[static_cast<std::size_t>(region.parent)];
+    if (region.frames_unseen == 0)
+      region.from_parent = parent.pose.inverse() * region.pose;
+    else
+      region.pose = parent.pose * region.from_parent;
+  }
+}
+
+void match_deformed(TrackerState& s) noexcept {
+  RadiusSearchSettings settings;
+  // Deformations go up to about a third of the object's radius; beyond, the nearest reading means nothing.
+  settings.radius =
+      std::min(static_cast<std::int32_t>(0.3 * s.model.radius() * kUnitsPerMetre), 60 * kUnitsPerMillimetre);
+  search_deformed(s.tables, s.surface, s.projector, s.regions, settings, s.taken_pixels, s.points);
+}
+
+bool judge(TrackerState& s) noexcept {
+  std::uint32_t agree = 0, deformed_matched = 0;
+  for (std::size_t i = 0; i < s.tables.size; ++i) {
+    agree += s.points.label[i] >= 0 ? 1 : 0;
+    deformed_matched += s.points.label[i] == kDeformed && s.points.match[i] >= 0 ? 1 : 0;
+  }
+  const std::uint32_t seen_through =
+      s.counts.in_front > deformed_matched ? s.counts.in_front - deformed_matched : 0;
+  const std::uint32_t hidden = s.counts.behind - s.counts.bulged;
+  const double explained = agree + 0.5 * deformed_matched;
+  const double total = explained + 0.5 * deformed_matched + seen_through + 0.25 * hidden;
+  s.confidence = total > 0 ? explained / total : 0;
+  const std::uint32_t fewest = std::max(kFewestAgreeing, s.counts.facing / 16);
+  return agree >= fewest && s.confidence >= 0.4 && seen_through <= agree + deformed_matched / 2;
+}
+
+bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept {
+  s.points.reset();
+  s.regions = RegionSet();
+  s.regroup_state = RegroupState();
+  TrackedRegion& base = s.regions[0];
+  base.alive = true;
+  base.pose = base.last_pose = base.predicted = pose;
+  s.surface.build(frame, predicted_window(s.tables, s.projector, s.points, s.regions,
+                                          kReach + s.tables.spacing * 4, s.camera.width, s.camera.height));
+  AlignSettings
+      settings;  // a detection is good to a few degrees and centimetres; the object may have moved since
+  settings.prior_rotation = 0.2;
+  settings.prior_translation = 0.04;
+  std::int32_t gate = kReach;
+  for (int round = 0; round < 10; ++round) {
+    round_of_alignment(s, share_of_points(s, 0.5), gate, gate, settings);
+    gate = std::max(gate * 3 / 4, 2 * inlier_limit(s));
+  }
+  base.motion = RigidTransform();
+  label_points(s);
+  count_regions(s);
+  match_deformed(s);
+  return judge(s);
+}
+
+void publish_tracked(TrackerState& s) noexcept {
+  TrackResult& r = s.result;
+  s.was_tracked = true;
+  r.state = TrackState::tracking;
+  r.confidence = static_cast<float>(s.confidence);
+  r.pose = s.regions[0].pose;
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < s.regions.size(); ++k) {
+    const TrackedRegion& region = s.regions[k];
+    if (!region.alive || region.points == 0) continue;
+    s.published[count++] = {
+        static_cast<std::int8_t>(k),
+        region.parent,
+        region.points,
+        static_cast<float>(region.rms),
+        static_cast<float>(std::min(1.0, 4.0 * region.points / std::max(1U, s.counts.facing))),
+        region.pose};
+  }
+  constexpr float kMetres = static_cast<float>(1 / kUnitsPerMetre);
+  for (std::size_t i = 0; i < s.tables.size; ++i) {
+    const IntPoint& p = s.points.position[i];
+    s.positions[i] = {static_cast<float>(p.x) * kMetres, static_cast<float>(p.y) * kMetres,
+                      static_cast<float>(p.z) * kMetres};
+    s.residuals[i] =
+        s.points.match[i] < 0 ? 0.0F : static_cast<float>(std::abs(s.points.residual[i])) * kMetres;
+  }
+  r.regions = {s.published.data(), count};
+  r.positions = s.positions;
+  r.labels = s.points.label;
+  r.matches = s.points.match;
+  r.residuals = s.residuals;
+}
+
+}  // namespace pliant
