@@ -46,6 +46,12 @@ bool contents_are_sane(const ModelView& view, std::span<const std::uint16_t> nei
   }
   for (const std::uint16_t n : neighbours)
     if (n != kNoNeighbour && n >= h.point_count) return false;
+  for (const Descriptor& d : view.descriptors())
+    for (const std::int8_t bin : d.bins)
+      if (bin < 0) return false;
+  for (const LocalFrame& f : view.frames())
+    for (const std::int16_t component : f.axes)
+      if (component < -16400 || component > 16400) return false;
   return true;
 }
 

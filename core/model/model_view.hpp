@@ -25,7 +25,8 @@ struct Descriptor {
   std::array<std::int8_t, kDescriptorSize> bins;
 };
 
-/// Axes of a keypoint's local reference frame in the model frame, rows x, y, z, Q14.
+/// Axes of a keypoint's local reference frame in the model frame, rows x, y, z, Q14; all 0 where the shape
+/// fixes none.
 struct LocalFrame {
   std::array<std::int16_t, 9> axes;
 };
@@ -99,7 +100,8 @@ class ModelView {
  public:
   ModelView() noexcept = default;
   /// Checks `image` (8-byte aligned) in full: header, checksum, every offset and index, finite numbers, unit
-  /// normals. On success `view` looks into `image`, which must outlive it.
+  /// normals, the range of descriptors and frames. On success `view` looks into `image`, which must outlive
+  /// it.
   [[nodiscard]] static ModelFault open(std::span<const std::byte> image, ModelView& view) noexcept;
 
   [[nodiscard]] bool empty() const noexcept { return header_ == nullptr; }

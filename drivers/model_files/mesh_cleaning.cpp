@@ -11,7 +11,8 @@ namespace pliant {
 
 namespace {
 
-constexpr double kWeldShare = 1e-5;  // of the bounding box's diagonal
+constexpr double kWeldShare = 1e-5;      // of the bounding box's diagonal
+constexpr double kMostWelded = 0.05e-3;  // metres
 constexpr std::uint32_t kGone = 0xFFFFFFFFU;
 
 Vector3 scaled(const Point3f& p, double factor) {
@@ -139,7 +140,7 @@ Mesh clean_mesh(const Geometry& geometry, double metres_per_unit, std::vector<st
     lowest = lowest.cwiseMin(scaled(p, metres_per_unit));
     highest = highest.cwiseMax(scaled(p, metres_per_unit));
   }
-  Welder welder(lowest, std::max(kWeldShare * (highest - lowest).norm(), 1e-30));
+  Welder welder(lowest, std::clamp(kWeldShare * (highest - lowest).norm(), 1e-30, kMostWelded));
   std::vector<std::uint32_t> place(geometry.vertices.size());
   for (std::size_t i = 0; i < geometry.vertices.size(); ++i)
     place[i] = welder.add(scaled(geometry.vertices[i], metres_per_unit), mesh.vertices);

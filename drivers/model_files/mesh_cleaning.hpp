@@ -10,9 +10,9 @@
 namespace pliant {
 
 /// Scales to metres, makes one vertex of those that (nearly) coincide (within a hundred-thousandth of the
-/// extent, far below the 0.1 mm that points may lie off the surface, but above the rounding of the formats),
-/// drops triangles without area, doubled triangles and, in a mesh, vertices of no triangle. What was dropped
-/// is said in `warnings` where it may matter.
+/// extent and 0.05 mm: below the 0.1 mm that points may lie off the surface, above the rounding of the
+/// formats), drops triangles without area, doubled triangles and, in a mesh, vertices of no triangle. What
+/// was dropped is said in `warnings` where it may matter.
 [[nodiscard]] Mesh clean_mesh(const Geometry& geometry, double metres_per_unit,
                               std::vector<std::string>& warnings);
 

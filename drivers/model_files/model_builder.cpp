@@ -36,7 +36,7 @@ constexpr std::size_t kLeastEvenPoints = 1500;
 constexpr std::size_t kLeastPoints = 50;
 /// Mean distance to the nearest in a farthest-point sampling that took its points from eight times as many,
 /// as a share of the hexagonal lattice's; and its least distance as a share of its mean.
-constexpr double kSamplingShare = 0.88, kLeastOfMean = 0.87;
+constexpr double kSamplingShare = 0.8, kLeastOfMean = 0.87;
 
 Error refuse(std::string_view what) {
   return {ErrorKind::bad_input, std::string(what)};
@@ -117,11 +117,11 @@ OrientedCloud points_of_mesh(Mesh& mesh, double spacing, BuiltModel& built) {
 OrientedCloud points_of_cloud(const Mesh& mesh, double spacing, BuiltModel& built) {
   // Far more points than a model holds only slow the estimate of normals down.
   constexpr std::size_t kMostLookedAt = 8 * limits::kMaxModelPoints;
-  OrientedCloud cloud{mesh.vertices, mesh.given_normals};
-  if (cloud.points.size() > kMostLookedAt) {
-    const std::vector<std::uint32_t> order = farthest_point_order(cloud.points, kMostLookedAt);
-    if (cloud.normals.empty()) cloud.normals.resize(cloud.points.size(), Vector3::Zero());
-    cloud = in_order(cloud, order);
+  const std::size_t step = (mesh.vertices.size() + kMostLookedAt - 1) / kMostLookedAt;
+  OrientedCloud cloud;
+  for (std::size_t i = 0; i < mesh.vertices.size(); i += step) {
+    cloud.points.push_back(mesh.vertices[i]);
+    cloud.normals.push_back(mesh.given_normals.empty() ? Vector3(Vector3::Zero()) : mesh.given_normals[i]);
   }
   const double given_spacing = mean_spacing(cloud.points);
   const bool any =
@@ -258,18 +258,15 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   built.characterisability = shape.measure;
   built.reason = shape.reason;
   warn_about_size(built, settings.metres_per_unit, built.warnings);
-  if (settings.spacing > 0 && built.spacing > 1.5 * settings.spacing)
+  if (settings.spacing > 0 && built.spacing > 1.2 * settings.spacing)
     built.warnings.push_back(fmt::format(
-        "a spacing of {} mm was asked for, but the points came to {:.2f} mm (at most {} points fit, "
-        "and a cloud cannot be made denser)",
+        "{:g} mm between points were asked for, {:.2f} mm came about: a model holds {} points at most, and "
+        "a cloud cannot be made denser",
         1000 * settings.spacing, 1000 * built.spacing, limits::kMaxModelPoints));
   if (built.characterisable) {
     const double tolerance = std::max(header.spacing, 2 * SensorDescription().sigma(0.8));
-    for (const Symmetry& symmetry : find_symmetries(cloud, tolerance))
-      built.warnings.push_back(fmt::format(
-          "it looks the same after 1/{} turn about the axis ({:.2f}, {:.2f}, {:.2f}): its pose is "
-          "known only up to such turns",
-          symmetry.parts_of_turn, symmetry.axis.x(), symmetry.axis.y(), symmetry.axis.z()));
+    const std::string symmetry = describe_symmetries(find_symmetries(cloud, tolerance));
+    if (!symmetry.empty()) built.warnings.push_back(symmetry);
   }
   return built;
 }

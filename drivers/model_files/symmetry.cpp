@@ -1,5 +1,7 @@
 #include "drivers/model_files/symmetry.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -96,6 +98,19 @@ std::vector<Symmetry> find_symmetries(const OrientedCloud& cloud, double toleran
     }
   }
   return found;
+}
+
+std::string describe_symmetries(const std::vector<Symmetry>& symmetries) {
+  if (symmetries.empty()) return {};
+  std::string text = "it looks nearly the same after";
+  for (std::size_t i = 0; i < symmetries.size(); ++i) {
+    const Symmetry& s = symmetries[i];
+    const std::string turn =
+        s.parts_of_turn == 2 ? "half a turn" : fmt::format("1/{} of a turn", s.parts_of_turn);
+    text += fmt::format("{} {} about ({:.2f} {:.2f} {:.2f})", i == 0 ? "" : ",", turn, s.axis.x(), s.axis.y(),
+                        s.axis.z());
+  }
+  return text + ": it may be found turned so";
 }
 
 }  // namespace pliant

@@ -18,4 +18,7 @@ struct Symmetry {
 /// `cloud`: points in farthest-point order.
 [[nodiscard]] std::vector<Symmetry> find_symmetries(const OrientedCloud& cloud, double tolerance);
 
+/// One line that names them; empty when there are none.
+[[nodiscard]] std::string describe_symmetries(const std::vector<Symmetry>& symmetries);
+
 }  // namespace pliant
