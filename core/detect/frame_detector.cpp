@@ -15,12 +15,13 @@ constexpr std::size_t kAlignPoints = 400;      // full refinement
 constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise of a fitted normal (2-4°)
                                      // averaged over a support
 
-// What a pose must score. Poses of absent objects reach 0.16 where the noise is narrow against the object's
-// relief, rarely 0.25 where it is not, and then several do so in different places: a lone one is believed
+// What a pose must score, and how far below the best pose elsewhere must stay. Absent objects reach 0.2,
+// rarely 0.27, and then in several places; once every keypoint has been tried, a lone pose is believed
 // earlier.
-constexpr double kConvincing = 0.25;
 constexpr double kCertain = 0.45;
-constexpr double kRivalShare = 0.5;
+constexpr double kConvincing = 0.28;
+constexpr double kLastResort = 0.23;
+constexpr double kRivalShare = 0.4;
 
 Vector3 to_vector(const Point3f& p) noexcept {
   return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
@@ -306,8 +307,16 @@ std::int64_t FrameDetector::slice_shortlist() noexcept {
 std::int64_t FrameDetector::slice_settle() noexcept {
   if (cursor_ < finalist_count_) {
     Candidate& candidate = finalists_[cursor_++];
-    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.1 * fine_, 12, candidate.pose);
+    // The object may have deformed: a pose that fits all of it fairly says that it is there, one that fits
+    // its largest rigid part closely says where.
+    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.5 * fine_, 6, candidate.pose);
     judge(candidate, kEvidencePoints);
+    Candidate close = candidate;
+    refine_pose(model_, snapshot_, kAlignPoints, fine_, 0.1 * fine_, 8, close.pose);
+    judge(close, kEvidencePoints);
+    const double score = std::max(candidate.score, close.score);
+    if (close.score > 0.5 * candidate.score) candidate = close;
+    candidate.score = score;
   }
   if (cursor_ >= finalist_count_) decide();
   return 400;
@@ -323,18 +332,23 @@ void FrameDetector::decide() noexcept {
     best_.score = finalists_[first].score;
     best_.evidence = finalists_[first].evidence;
     best_.seamless = finalists_[first].seamless;
-    for (std::size_t k = 0; k < finalist_count_; ++k)
-      if (!same_place(finalists_[k].pose, best_.pose))
-        best_.rival = std::max(best_.rival, finalists_[k].score);
+    for (std::size_t k = 0; k < finalist_count_; ++k) {
+      if (k == first) continue;
+      const Vector3 apart = finalists_[k].pose * model_.centre() - best_.pose * model_.centre();
+      double& other = apart.dot(apart) < model_.radius() * model_.radius() ? best_.twin : best_.rival;
+      other = std::max(other, finalists_[k].score);
+    }
   }
-  const bool alone = best_.rival <= kRivalShare * best_.score;
-  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && alone);
+  const bool lone = best_.rival <= kRivalShare * best_.score;
+  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && lone);
+  const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
   if (convincing) {
     state_ = DetectState::found;
-  } else if (++round_ < settings_.rounds && order_next_ < order_count_) {
+  } else if (!last) {
+    ++round_;
     begin_round();
   } else {
-    state_ = DetectState::nothing;
+    state_ = best_.score >= kLastResort && lone ? DetectState::found : DetectState::nothing;
   }
 }
 

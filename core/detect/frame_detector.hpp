@@ -40,7 +40,9 @@ enum class DetectState : std::uint8_t {
 struct Detection {
   RigidTransform pose;    ///< camera <- model, in the frame given to begin()
   double score = -10;     ///< PoseEvidence::score() of the refined pose less its seamless share, at most 1
-  double rival = -10;     ///< of the best pose at a distinctly other place or attitude
+  double rival = -10;     ///< of the best pose at another place: more than the model's radius away
+  double twin = -10;      ///< of the best pose at the same place in another attitude: near `score` for a
+                          ///< symmetric object, whose attitude is then one of several
   PoseEvidence evidence;  ///< over kEvidencePoints model points
   double seamless = 0;    ///< SeamEvidence::share()
 };

@@ -13,6 +13,7 @@ namespace {
 constexpr float kFacing = 0.1736F * 0.1736F;  // cos² 80°
 constexpr float kSameNormal = 0.7071F;        // cos 45°
 constexpr double kResolvable = 0.06;  // of the model's radius; noise (3 σ) wider than that hides relief
+constexpr double kFarInFront = 0.2;   // of the model's radius: no dent is that deep
 constexpr float kNear = 0.05F;        // metres; nearer points have no pixel
 
 }  // namespace
@@ -22,6 +23,7 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
   const FastTransform fast(pose);
   const auto widest = static_cast<float>(most);
   const auto resolvable = static_cast<float>(kResolvable * model.radius());
+  const auto far = static_cast<float>(kFarInFront * model.radius());
   const auto base = static_cast<float>(tolerance);
   PoseEvidence evidence;
   count = std::min(count, model.size());
@@ -63,6 +65,7 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
       }
     } else {
       ++(off > 0 ? evidence.floating : evidence.behind);
+      if (off > 0) evidence.impossible += static_cast<double>(std::min(along / far, 1.0F));
     }
   }
   return evidence;

@@ -20,11 +20,13 @@ struct PoseEvidence {
   int crossing = 0;      ///< lie on the observed surface but with another normal
   double agreement = 0;  ///< of the agreeing points, each with how closely it agrees, [0, 1]
 
-  /// agreement − 1.5 · floating − 0.3 · (behind, outside, crossing), as a share of the facing points: at
+  double impossible = 0;  ///< of the floating points, each with how far in front it floats, [0, 1]
+
+  /// agreement − 1.5 · impossible − 0.3 · (behind, outside, crossing), as a share of the facing points: at
   /// most 1. Something that floats is impossible, something hidden or unseen merely unlikely.
   [[nodiscard]] double score() const noexcept {
     if (facing == 0) return -10;
-    return (agreement - 1.5 * floating - 0.3 * (behind + outside + crossing)) / facing;
+    return (agreement - 1.5 * impossible - 0.3 * (behind + outside + crossing)) / facing;
   }
 };
 

@@ -12,7 +12,8 @@ namespace {
 constexpr int kSide = 32;        // cells
 constexpr float kReach = 1.35F;  // half of the grid in model radii
 
-constexpr float kAlike = 0.82F;  // cos 35°: what the noise of two fitted normals leaves of one direction
+constexpr float kLeastPixels = 4;  // a cell's edge: depth sensors smear edges over several pixels
+constexpr float kAlike = 0.82F;    // cos 35°: what the noise of two fitted normals leaves of one direction
 
 struct Cell {
   float depth = 0;  // of the nearest point in it, 0: empty
@@ -50,7 +51,8 @@ SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot
   const auto radius = static_cast<float>(model.radius());
   if (!(cz > radius)) return evidence;
   // The grid stands on the plane through the centre, across the view.
-  const float cell_edge = 2 * kReach * radius / kSide;
+  const float pixel = cz / static_cast<float>(snapshot.camera().fx);
+  const float cell_edge = std::max(2 * kReach * radius / kSide, kLeastPixels * pixel);
   Cell grid[kSide][kSide];
   count = std::min(count, model.size());
   for (std::size_t i = 0; i < count; ++i) {
