@@ -348,7 +348,8 @@ void FrameDetector::decide() noexcept {
     ++round_;
     begin_round();
   } else {
-    state_ = best_.score >= kLastResort && lone ? DetectState::found : DetectState::nothing;
+    const bool clear = lone && best_.twin <= kRivalShare * best_.score;
+    state_ = best_.score >= kLastResort && clear ? DetectState::found : DetectState::nothing;
   }
 }
 
