@@ -131,8 +131,8 @@ void match_deformed(TrackerState& s) noexcept {
 bool judge(TrackerState& s) noexcept {
   std::uint32_t agree = 0, deformed_matched = 0;
   for (std::size_t i = 0; i < s.tables.size; ++i) {
-    agree += s.points.label[i] >= 0 ? 1 : 0;
-    deformed_matched += s.points.label[i] == kDeformed && s.points.match[i] >= 0 ? 1 : 0;
+    agree += s.points.label[i] >= 0 ? 1U : 0U;
+    deformed_matched += s.points.label[i] == kDeformed && s.points.match[i] >= 0 ? 1U : 0U;
   }
   const std::uint32_t seen_through =
       s.counts.in_front > deformed_matched ? s.counts.in_front - deformed_matched : 0;
