@@ -9,7 +9,7 @@ namespace pliant {
 RegionColour region_colour(int label) {
   if (label == kDeformed) return {213, 94, 0};                       // vermilion
   if (label == 0) return {0, 114, 178};                              // blue
-  if (label <= kNotObserved) return {128, 128, 128};                 // grey
+  if (label <= kNotObserved) return {80, 80, 80};                    // dark grey
   constexpr std::array<RegionColour, 7> others = {{{240, 228, 66},   // yellow
                                                    {0, 158, 115},    // bluish green
                                                    {204, 121, 167},  // reddish purple
