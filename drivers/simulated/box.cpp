@@ -21,26 +21,26 @@ double box(const Vector3& p) {
 class Box final : public Actor {
  public:
   Box() {
-    mesh_ = mesh_of(&box, {-0.14, -0.13, -0.09}, {0.14, 0.11, 0.13}, 0.0054);
+    mesh_ = mesh_of(&box, {-0.14, -0.13, -0.09}, {0.14, 0.11, 0.13}, 0.0050);
     hand_ = open_hand_mesh();
     vertex_part_.assign(mesh_.vertices.size(), 0);
   }
 
   void move(double phase, ActorState& state, std::span<Vector3> vertices) const override {
     // Lifted and turned, hidden in part, carried out to the right, brought back.
-    const double out = there_and_back(phase, 110, 186, 206, 282);
+    const double out = there_and_back(phase, 102, 186, 200, 284);
     const double turn =
-        40 * there_and_back(phase, 8, 50, 60, 105) + 34 * there_and_back(phase, 115, 170, 222, 276);
+        40 * there_and_back(phase, 8, 50, 60, 105) + 34 * there_and_back(phase, 112, 170, 216, 276);
     const double tilt = 14 * there_and_back(phase, 20, 50, 62, 96);
     const double lifted = there_and_back(phase, 4, 36, 240, 280);
     RigidTransform& base = state.parts[0];
     base.rotation = rotation_about(Vector3::UnitZ(), kDegree * (-22 + turn)) *
                     rotation_about(Vector3(0.6, 0.8, 0), kDegree * tilt);
-    base.translation = {0.02 - 0.05 * there_and_back(phase, 20, 50, 70, 100) + 0.66 * out, -0.02,
+    base.translation = {0.02 - 0.05 * there_and_back(phase, 20, 50, 70, 100) + 0.62 * out, -0.02,
                         0.066 + 0.07 * lifted};
     for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = base * rest(i);
     state.hand.rotation = rotation_about(Vector3::UnitY(), kDegree * 8);
-    state.hand.translation = {0.80 - 0.82 * there_and_back(phase, 30, 70, 80, 118), -0.26, 0.19};
+    state.hand.translation = {0.80 - 0.82 * there_and_back(phase, 24, 62, 72, 110), -0.26, 0.19};
   }
 };
 

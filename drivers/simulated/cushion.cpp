@@ -9,17 +9,17 @@ namespace {
 
 const Vector3 kHalf(0.165, 0.125, 0.052);  ///< metres
 const Vector3 kDent(0.015, -0.010, 0);     ///< its middle, model frame
-constexpr double kDentRadius = 0.090;      ///< metres
+constexpr double kDentRadius = 0.095;      ///< metres
 constexpr double kDeepest = 0.035;         ///< metres
 
 double cushion(const Vector3& p) {
   double all = pillow(p, kHalf);
-  all = smooth_union(all, ellipsoid(p, {-0.105, 0.060, 0.036}, {0.038, 0.026, 0.030}), 0.012);  // lump
-  all = smooth_union(all, sphere(p, {0.110, 0.068, 0.040}, 0.021), 0.008);                      // knob
+  all = smooth_union(all, ellipsoid(p, {-0.105, 0.060, 0.036}, {0.044, 0.028, 0.034}), 0.012);  // lump
+  all = smooth_union(all, sphere(p, {0.108, 0.066, 0.046}, 0.024), 0.008);                      // knob
   all =
-      smooth_union(all, capsule(p, {-0.120, -0.085, 0.024}, {-0.020, -0.098, 0.028}, 0.011), 0.010);  // ridge
-  all = smooth_union(all, capsule(p, {0.135, -0.080, 0.014}, {0.150, 0.010, 0.018}, 0.014), 0.010);   // seam
-  return smooth_difference(all, capsule(p, {-0.150, -0.030, 0.052}, {-0.095, -0.045, 0.056}, 0.014), 0.010);
+      smooth_union(all, capsule(p, {-0.120, -0.085, 0.024}, {-0.020, -0.098, 0.028}, 0.014), 0.010);  // ridge
+  all = smooth_union(all, capsule(p, {0.135, -0.080, 0.014}, {0.150, 0.010, 0.018}, 0.017), 0.010);   // seam
+  return smooth_difference(all, capsule(p, {-0.150, -0.030, 0.052}, {-0.095, -0.045, 0.056}, 0.017), 0.010);
 }
 
 /// Share of the dent's depth by which a point at rest goes down: all of it at the dent's middle on top,

@@ -70,9 +70,9 @@ class Figure final : public Actor {
 
   void move(double phase, ActorState& state, std::span<Vector3> vertices) const override {
     RigidTransform& base = state.parts[0];
-    base.rotation = rotation_about(Vector3::UnitZ(), kDegree * (-14 + 30 * sway(phase, kRound, 2)));
+    base.rotation = rotation_about(Vector3::UnitZ(), kDegree * (-14 + 30 * sway(phase, kRound, 1)));
     base.translation = {0.045 * sway(phase, kRound, 1), 0.030 * sway(phase, kRound, 3), 0.190};
-    const double waist = kDegree * 26 * (sway(phase, kRound, 2) - 1.2 * sway(phase, kRound, 3));
+    const double waist = kDegree * 19 * (sway(phase, kRound, 1) - 1.2 * sway(phase, kRound, 2));
     const double elbow = kDegree * (-55 * there_and_back(phase, 30, 75, 95, 140) +
                                     30 * there_and_back(phase, 160, 200, 215, 255));
     const RigidTransform whole_waist = hinge(kWaist, kWaistAxis, waist);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::int32_t kPixel = 1 << kDisparityBits;
 constexpr double kFullWidth = 640;  ///< pixels; disparity is measured at this size
-constexpr std::size_t kFixedLayers = 8;
-constexpr std::uint32_t kFlickerSize = 256, kFixedSize = 128;
+constexpr std::uint32_t kFlickerSize = 256, kFixedSize = 128, kFixedLayers = 8;
+constexpr std::uint32_t kFixedRow = kFixedLayers * kFixedSize;
 
 /// Flicker before rounding to eighths, in eighths: with the rounding it shows as the 0.5 to 0.7 of a still
 /// scene at 0.45 to 0.65 m.
@@ -23,8 +23,10 @@ constexpr double kFlicker = 0.45;
 constexpr double kInterpolation = 1.22474487139;
 /// Share of readings lost anywhere: 0.3 %, the flicker field above 2.75 deviations.
 constexpr int kLostAbove = 88;
-/// Change of disparity per pixel of the full image: from here on matching windows suffer (75° at 0.6 m).
-constexpr double kSteep = 0.35;
+/// Change of disparity per pixel of the full image: from here on matching windows suffer (68° at 0.65 m).
+constexpr double kSteep = 0.28;
+/// Pixels to either side that a matching window mixes at an edge.
+constexpr int kReach = 2;
 
 std::int32_t difference(std::int32_t a, std::int32_t b) {
   return std::abs(a - b);
@@ -40,13 +42,17 @@ StructureSensor::StructureSensor(const Intrinsics& camera, const SensorDescripti
       flicker_field_(kFlickerSize, mixed(seed, 1)) {
   const double scale = kFullWidth / width_;
   pixel_step_ = static_cast<std::int32_t>(scale * kPixel);
-  reach_ = width_ >= 480 ? 2 : 1;
-  steep_ = static_cast<std::int32_t>(2 * reach_ * scale * kSteep * kPixel);
-  shadow_extra_ = static_cast<std::uint32_t>(2.5 / scale * 256);
+  steep_ = static_cast<std::int32_t>(2 * kReach * scale * kSteep * kPixel);
+  shadow_extra_ = static_cast<std::uint32_t>(4 / scale * 256);
   last_column_ = width_ - std::max(1, static_cast<int>(8 / scale));
   field_step_ = static_cast<std::uint32_t>(scale * 256);
   shadow_.resize(static_cast<std::size_t>(width_));
-  for (std::size_t i = 0; i < kFixedLayers; ++i) fixed_fields_.emplace_back(kFixedSize, mixed(seed, 100 + i));
+  fixed_fields_.resize(kFixedRow * kFixedSize);
+  for (std::uint32_t layer = 0; layer < kFixedLayers; ++layer) {
+    const NoiseField field(kFixedSize, mixed(seed, 100 + layer));
+    for (std::uint32_t v = 0; v < kFixedSize; ++v)
+      std::copy_n(field.row(v), kFixedSize, fixed_fields_.data() + v * kFixedRow + layer * kFixedSize);
+  }
 
   const auto most = static_cast<std::size_t>(8 * kFocalBaseline / sensor.near_limit);
   for (std::size_t eighths = 0; eighths <= most; ++eighths) {
@@ -71,7 +77,7 @@ void StructureSensor::find_shadow(const std::int32_t* row, std::uint32_t key) {
       const std::int64_t at = static_cast<std::int64_t>(u) * pixel_step_ - row[u];
       if (at > reached + kPixel / 2) {
         dark = 1;
-        extra = (shadow_extra_ + (mixed32(key + static_cast<std::uint32_t>(u)) & 255)) >> 8;
+        extra = (shadow_extra_ * (64 + (mixed32(key + static_cast<std::uint32_t>(u)) & 255))) >> 16;
       } else {
         reached = std::min(reached, at);
       }
@@ -84,19 +90,20 @@ void StructureSensor::find_shadow(const std::int32_t* row, std::uint32_t key) {
   }
 }
 
-int StructureSensor::fixed_error(std::uint32_t u, std::uint32_t v, std::int32_t disparity) const {
-  const auto layer = static_cast<std::size_t>(disparity >> kDisparityBits);
+int StructureSensor::fixed_error(const std::int8_t* fixed_row, std::uint32_t u, std::int32_t disparity) {
+  const auto layer = static_cast<std::uint32_t>(disparity >> kDisparityBits);
   const int part = (disparity >> (kDisparityBits - 8)) & 255;
-  return (256 - part) * fixed_fields_[layer % kFixedLayers].at(u, v) +
-         part * fixed_fields_[(layer + 1) % kFixedLayers].at(u, v);
+  const std::int8_t* at = fixed_row + (u % kFixedSize);
+  return (256 - part) * at[layer % kFixedLayers * kFixedSize] +
+         part * at[(layer + 1) % kFixedLayers * kFixedSize];
 }
 
 std::int32_t StructureSensor::matched_at_edge(const Rows& rows, int u, int flicker, int fixed) const {
   const std::int32_t centre = rows.here[u];
   const int before = std::max(u - 1, 0);
   const int after = std::min(u + 1, width_ - 1);
-  const std::int32_t left = rows.here[std::max(u - reach_, 0)];
-  const std::int32_t right = rows.here[std::min(u + reach_, width_ - 1)];
+  const std::int32_t left = rows.here[std::max(u - kReach, 0)];
+  const std::int32_t right = rows.here[std::min(u + kReach, width_ - 1)];
   const std::int32_t above = rows.above[u];
   const std::int32_t below = rows.below[u];
   const std::int32_t change = std::max(difference(left, right), difference(above, below));
@@ -106,18 +113,19 @@ std::int32_t StructureSensor::matched_at_edge(const Rows& rows, int u, int flick
   const int luck = (23 * fixed + 22 * flicker) / 32;
 
   if (bend < change / 2) {  // a steep surface, no edge: lost the more often the steeper
-    const int lost_above = 64 - static_cast<int>(32 * static_cast<std::int64_t>(change - steep_) / steep_);
+    const int lost_above = 66 - static_cast<int>(32 * static_cast<std::int64_t>(change - steep_) / steep_);
     return luck > lost_above ? 0 : centre;
   }
-  const bool at_jump =
-      std::max(difference(rows.here[before], rows.here[after]), reach_ == 1 ? change : 0) > change / 2;
-  if (luck > (at_jump ? 8 : 44)) return 0;  // 40 % and 8 % of them
+  const std::int32_t at_once = std::max(difference(rows.here[before], rows.here[after]),
+                                        difference(rows.just_above[u], rows.just_below[u]));
+  const bool at_jump = at_once > change / 2;
+  if (luck > (at_jump ? -14 : 44)) return 0;  // 67 % and 8 % of them
   const std::uint32_t dice = mixed32(rows.key ^ static_cast<std::uint32_t>(u) * 0x9e3779b9U);
   const std::int32_t other[4] = {left, right, above, below};
   const std::int32_t neighbour = other[dice >> 30];
   const std::uint32_t chance = dice & 255;
-  if (chance < (at_jump ? 96U : 24U)) return neighbour;           // the edge is matched a pixel off
-  if (at_jump && chance < 108U && neighbour > 0 && centre > 0) {  // flies between near and far
+  if (chance < (at_jump ? 128U : 24U)) return neighbour;          // the edge is matched a pixel off
+  if (at_jump && chance < 148U && neighbour > 0 && centre > 0) {  // flies between near and far
     const std::int64_t share = dice >> 8 & 255;
     return static_cast<std::int32_t>((share * neighbour + (256 - share) * centre) >> 8);
   }
@@ -137,13 +145,19 @@ void StructureSensor::measure(const DisparityImage& scene, std::int64_t number,
       return pixels + static_cast<std::ptrdiff_t>(std::clamp(y, 0, height_ - 1)) * width_;
     };
     const auto row_key = static_cast<std::uint32_t>(mixed(now, static_cast<std::uint64_t>(v)));
-    const Rows rows{row_of(v - reach_), row_of(v), row_of(v + reach_), static_cast<std::uint32_t>(v),
+    const Rows rows{row_of(v - kReach),
+                    row_of(v - 1),
+                    row_of(v),
+                    row_of(v + 1),
+                    row_of(v + kReach),
+                    static_cast<std::uint32_t>(v),
                     row_key};
     find_shadow(rows.here, row_key);
     const std::uint32_t field_v = rows.v * field_step_ >> 8;
     const std::int8_t* flicker_now = flicker_field_.row(field_v + static_cast<std::uint32_t>(now >> 32));
     const std::int8_t* flicker_before =
         flicker_field_.row(field_v + static_cast<std::uint32_t>(before >> 32));
+    const std::int8_t* fixed_row = fixed_fields_.data() + field_v % kFixedSize * kFixedRow;
     const std::uint32_t mask = flicker_field_.mask();
     std::uint16_t* out = depth.data() + static_cast<std::ptrdiff_t>(v) * width_;
     for (int u = 0; u < width_; ++u) {
@@ -156,15 +170,14 @@ void StructureSensor::measure(const DisparityImage& scene, std::int64_t number,
       if (flicker > kLostAbove) continue;
       std::int32_t d = rows.here[u];
       const std::int32_t change = std::max(
-          difference(rows.here[std::max(u - reach_, 0)], rows.here[std::min(u + reach_, width_ - 1)]),
+          difference(rows.here[std::max(u - kReach, 0)], rows.here[std::min(u + kReach, width_ - 1)]),
           difference(rows.above[u], rows.below[u]));
-      if (change > steep_)
-        d = matched_at_edge(rows, u, flicker, fixed_fields_[0].at(field_u + 64, field_v + 64));
+      if (change > steep_) d = matched_at_edge(rows, u, flicker, fixed_row[(field_u + 64) % kFixedSize]);
       if (d <= 0) continue;
       const auto eighths = static_cast<std::size_t>(std::min(d >> (kDisparityBits - 3), most));
       const Deviation deviation = deviation_[eighths];
       const std::int32_t error =
-          deviation.fixed * fixed_error(field_u, field_v, d) / (256 * NoiseField::kDeviation) +
+          deviation.fixed * fixed_error(fixed_row, field_u, d) / (256 * NoiseField::kDeviation) +
           deviation.flicker * flicker / NoiseField::kDeviation;
       const std::int32_t measured = ((d >> (kDisparityBits - 11)) + error + 128) >> 8;
       if (measured > 0 && measured <= most) out[u] = millimetres_[static_cast<std::size_t>(measured)];

@@ -37,9 +37,11 @@ class StructureSensor {
   };
   /// Rows around the one being measured, and where the noise fields begin in it.
   struct Rows {
-    const std::int32_t* above;
+    const std::int32_t* above;  ///< two rows up
+    const std::int32_t* just_above;
     const std::int32_t* here;
-    const std::int32_t* below;
+    const std::int32_t* just_below;
+    const std::int32_t* below;  ///< two rows down
     std::uint32_t v;
     std::uint32_t key;  ///< of this row's per-pixel random numbers
   };
@@ -47,13 +49,13 @@ class StructureSensor {
   void find_shadow(const std::int32_t* row, std::uint32_t key);
   /// What is matched at a pixel near a jump or on a steep surface; 0 = no match.
   [[nodiscard]] std::int32_t matched_at_edge(const Rows& rows, int u, int flicker, int fixed) const;
-  [[nodiscard]] int fixed_error(std::uint32_t u, std::uint32_t v, std::int32_t disparity) const;
+  [[nodiscard]] static int fixed_error(const std::int8_t* fixed_row, std::uint32_t u, std::int32_t disparity);
 
   int width_, height_;
   std::int32_t pixel_step_;     ///< disparity by which one pixel moves, fixed point
-  int reach_;                   ///< pixels to either side that a matching window mixes
-  std::int32_t steep_;          ///< change over 2 · reach_ pixels from which matching suffers, fixed point
-  std::uint32_t shadow_extra_;  ///< pixels, 8 fraction bits
+  std::int32_t steep_;          ///< change over four pixels from which matching suffers, fixed point
+  std::uint32_t shadow_extra_;  ///< largest widening of a shadow, pixels, 8 fraction bits; a quarter to five
+                                ///< quarters of it is used
   int last_column_;             ///< first one without readings
   std::uint32_t field_step_;    ///< noise field pixels per image pixel, 8 fraction bits
   std::uint64_t seed_;
@@ -61,7 +63,8 @@ class StructureSensor {
   std::vector<Deviation> deviation_;        ///< likewise
   std::vector<std::uint8_t> shadow_;        ///< of the row being measured
   NoiseField flicker_field_;
-  std::vector<NoiseField> fixed_fields_;  ///< one for each whole pixel of disparity, in turn
+  /// Row by row, in each row one field after another: one for each whole pixel of disparity, in turn.
+  std::vector<std::int8_t> fixed_fields_;
 };
 
 }  // namespace pliant::simulated

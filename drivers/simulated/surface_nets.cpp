@@ -137,7 +137,8 @@ void even_out(Solid solid, const std::vector<std::array<std::uint32_t, 3>>& tria
 Geometry mesh_of(Solid solid, const Vector3& low, const Vector3& high, double spacing) {
   std::vector<Vector3> vertices;
   Geometry mesh;
-  // A surface passes 1.5 cells per cell face of its area; even triangles of side s have 1 / (0.866 s²) vertices.
+  // A surface passes 1.5 cells per cell face of its area; even triangles of side s have 1 / (0.866 s²)
+  // vertices.
   Grid grid(solid, low, high, 1.14 * spacing);
   grid.place_vertices(vertices);
   grid.place_triangles(vertices, mesh.triangles);
