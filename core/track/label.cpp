@@ -19,45 +19,44 @@ std::span<const std::uint16_t> neighbours_of(const ModelTables& model, std::size
   return model.model->neighbours(i);
 }
 
-/// Regions that may explain a point better than its own: those of its neighbours, or any once it counts as
-/// off.
-std::uint32_t rivals_of(const ModelTables& model, const RegionSet& regions, const PointState& points,
-                        std::size_t i) noexcept {
-  std::uint32_t set = 0;
-  if (points.evidence[i] >= kEvidenceDeformed) {
-    for (std::size_t k = 0; k < regions.size(); ++k) set |= regions[k].alive ? 1U << k : 0U;
-  } else {
-    for (const std::uint16_t n : neighbours_of(model, i))
-      if (n < model.size) set |= 1U << static_cast<unsigned>(points.home[n]);
-  }
-  return set & ~(1U << static_cast<unsigned>(points.home[i]));
+using HomeCounts = std::array<int, limits::kMaxRegions>;
+
+HomeCounts homes_around(const ModelTables& model, const PointState& points, std::size_t i) noexcept {
+  HomeCounts counts{};
+  for (const std::uint16_t n : neighbours_of(model, i))
+    if (n < model.size) ++counts[static_cast<std::size_t>(points.home[n])];
+  return counts;
 }
 
-/// Weighs the point's own region against its rivals and moves it when the evidence suffices.
+/// Weighs the point's own region against those of its neighbours and moves it when the evidence suffices.
+/// Beside how well each explains the reading, every neighbour has a say: regions are parts of the surface,
+/// not scattered points.
 bool consider_rivals(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
                      const std::array<FixedPose, limits::kMaxRegions>& poses, std::int32_t limit,
                      const Sighting::Look& own, PointState& points, std::size_t i) noexcept {
-  const std::uint32_t rivals = rivals_of(model, regions, points, i);
+  const HomeCounts around = homes_around(model, points, i);
+  const auto home = static_cast<std::size_t>(points.home[i]);
   const std::int32_t own_cost = own.sight == Sight::agrees ? std::abs(own.residual) : 2 * limit;
   std::int8_t best = -1;
-  std::int32_t best_cost = own_cost;
+  int best_gain = 0;
   for (std::size_t k = 0; k < regions.size(); ++k) {
-    if ((rivals >> k & 1U) == 0 || !regions[k].alive) continue;
+    if (k == home || !regions[k].alive || around[k] < 2) continue;
     const Sighting::Look other = sighting.look(i, poses[k]);
-    if (other.sight != Sight::agrees || std::abs(other.residual) >= best_cost) continue;
+    if (other.sight != Sight::agrees) continue;
+    const int gain = (own_cost - std::abs(other.residual)) * 8 / limit + around[k] - around[home];
+    if (gain <= best_gain) continue;
     best = static_cast<std::int8_t>(k);
-    best_cost = std::abs(other.residual);
+    best_gain = gain;
   }
   if (best < 0) {
     raise(points.switching[i], -4, kSwitchAt);
     return false;
   }
-  const int gain = std::min(8, (own_cost - best_cost) * 8 / limit);
   if (points.rival[i] != best) {
     points.rival[i] = best;
     points.switching[i] = 0;
   }
-  raise(points.switching[i], gain, kSwitchAt);
+  raise(points.switching[i], std::min(best_gain, 8), kSwitchAt);
   if (points.switching[i] < kSwitchAt) return false;
   points.home[i] = best;
   points.switching[i] = 0;

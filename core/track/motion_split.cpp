@@ -210,8 +210,8 @@ bool find_motion_split(const ModelTables& model, const PatchTables& patches, con
   // The part must follow its motion as closely as noise allows, and clearly not the rest's.
   split.part_rms_before = std::sqrt(std::max(0.0, best.part_before / best.part_points));
   split.part_rms = std::sqrt(std::max(0.0, best.part_after / best.part_points));
-  if (split.part_rms > 2.0 * settings.noise || split.part_rms_before < 1.5 * split.part_rms ||
-      split.part_rms_before < 1.5 * settings.noise)
+  if (split.part_rms > 2.0 * settings.noise || split.part_rms_before < 2 * split.part_rms ||
+      split.part_rms_before < settings.moved)
     return false;
 
   const Vector3 centre_metres(centre.x / kUnitsPerMetre, centre.y / kUnitsPerMetre,

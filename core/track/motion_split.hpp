@@ -44,7 +44,7 @@ struct MotionSplit {
 struct MotionSplitSettings {
   std::uint32_t fewest_points = 40;  ///< seen, of each side
   double noise = 0.001;              ///< of a residual, metres
-  double joint_gap = 0.005;          ///< farthest that the two motions may part at the joint, metres
+  double moved = 0.003;  ///< residuals of a part that moved away, metres; below, it is the model's misfit
 };
 
 /// Looks for a split of region `k`; `points.correspondences` must hold its points under its current pose with

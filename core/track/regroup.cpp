@@ -155,6 +155,7 @@ bool split_by_motion(const RegroupContext& context, const RegroupSettings& setti
     if (!region.alive || region.members < 2 * settings.fewest_points) continue;
     motion.noise = std::max(region.scale, context.surface.sigma(z) / 2) / kUnitsPerMetre;
     motion.noise = std::min(motion.noise, context.surface.sigma(z) * 1.5 / kUnitsPerMetre);
+    motion.moved = 0.5 * limit_at(context, region.pose) / kUnitsPerMetre;
     const auto id = static_cast<std::int8_t>(k);
     if (!find_motion_split(context.model, context.patches, regions, id, motion, points, scratch)) continue;
     state.suspected = state.suspect == id ? state.suspected + 1 : 1;
