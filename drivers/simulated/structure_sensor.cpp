@@ -110,7 +110,7 @@ std::int32_t StructureSensor::matched_at_edge(const Rows& rows, int u, int flick
   const std::int32_t bend =
       std::max(difference(left + right, 2 * centre), difference(above + below, 2 * centre));
   // Partly the same in every frame, partly not; standard deviation about 32.
-  const int luck = (23 * fixed + 22 * flicker) / 32;
+  const int luck = (12 * fixed + 30 * flicker) / 32;
 
   if (bend < change / 2) {  // a steep surface, no edge: lost the more often the steeper
     const int lost_above = 66 - static_cast<int>(32 * static_cast<std::int64_t>(change - steep_) / steep_);
@@ -119,7 +119,7 @@ std::int32_t StructureSensor::matched_at_edge(const Rows& rows, int u, int flick
   const std::int32_t at_once = std::max(difference(rows.here[before], rows.here[after]),
                                         difference(rows.just_above[u], rows.just_below[u]));
   const bool at_jump = at_once > change / 2;
-  if (luck > (at_jump ? -14 : 44)) return 0;  // 67 % and 8 % of them
+  if (luck > (at_jump ? -8 : 44)) return 0;  // 60 % and 8 % of them
   const std::uint32_t dice = mixed32(rows.key ^ static_cast<std::uint32_t>(u) * 0x9e3779b9U);
   const std::int32_t other[4] = {left, right, above, below};
   const std::int32_t neighbour = other[dice >> 30];

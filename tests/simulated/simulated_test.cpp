@@ -104,7 +104,7 @@ TEST_P(SimulatedObject, TruthFitsTheDepth) {
         }
       floats += p.z() < nearest - 0.01 ? 1U : 0U;
       visible += truth.visible[i];
-      fits += truth.visible[i] != 0 && closest < 0.003 ? 1U : 0U;
+      fits += truth.visible[i] != 0 && closest < 0.005 ? 1U : 0U;
     }
     EXPECT_GT(visible, truth.vertices.size() / 5);
     EXPECT_LT(visible, truth.vertices.size() * 6 / 10);
