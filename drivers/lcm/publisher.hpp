@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "drivers/common/result.hpp"
+#include "drivers/lcm/depth_messages.hpp"
 #include "drivers/lcm/lcm_bus.hpp"
 #include "drivers/lcm/message_ring.hpp"
 #include "drivers/lcm/status_message.hpp"
@@ -21,6 +22,8 @@ namespace pliant {
 struct LcmSettings {
   std::string url;  ///< udpm://…, memq:// or file://PATH?mode=w; empty: $LCM_DEFAULT_URL, else kDefaultLcmUrl
   std::string prefix = "PLIANT";  ///< of the channels' names; 1 to 54 letters, digits, '_', '-', '.', '/'
+  int depth_width = 0,
+      depth_height = 0;  ///< of the pictures given to publish_depth(), pixels; 0: never called
 };
 
 /// Called on the sending thread, for time and resource counts. Must not throw; may be left null.
@@ -35,14 +38,18 @@ struct SendObserver {
 struct SendCounters {
   std::int64_t messages = 0;  ///< handed to the network, status included
   std::int64_t bytes = 0;     ///< their bodies
-  std::int64_t unsent = 0;    ///< frames given up for newer ones because sending did not keep up
+  std::int64_t unsent = 0;    ///< frames and pictures given up for newer ones because sending did not keep up
   std::int64_t failures = 0;  ///< messages that LCM refused or that found no network
 };
 
-/// publish() and publish_status() are called by one thread each (or the same); they copy into a slot, wake
-/// the sending thread and return: no lock, no heap call, no wait, whatever the network does.
+/// publish(), publish_status() and publish_depth() are called by one thread each (or the same); they copy
+/// into a slot, wake the sending thread and return: no lock, no heap call, no wait, whatever the network
+/// does.
 class LcmPublisher {
  public:
+  /// Frames that can wait to be sent: 0.2 s at 30 Hz.
+  static constexpr std::size_t kFrameSlots = 6;
+
   /// For models of up to `model_points` points. An error where the URL or the prefix is bad or a log file
   /// cannot be written. A network that is not there is none: warning() tells it in one line with the mend,
   /// the messages are thrown away, and the thread tries again every two seconds.
@@ -63,6 +70,9 @@ class LcmPublisher {
   /// waiting is given up.
   void publish(std::span<const MessageBody> bodies, std::int64_t utime) noexcept;
   void publish_status(const StatusContent& content) noexcept;
+  /// For who asks for it: a picture is 0.6 MB at 640×480. Pictures wait apart from the tracker's messages and
+  /// give way to newer ones likewise.
+  void publish_depth(const DepthFrame& frame, const Intrinsics& camera) noexcept;
 
   /// Waits until everything handed over before was sent, at most `timeout_ms`; false when it was not.
   [[nodiscard]] bool flush(int timeout_ms) const noexcept;
@@ -82,14 +92,16 @@ class LcmPublisher {
   bool send_waiting(MessageRing& ring, bool tell) noexcept;
   void wake() noexcept;
 
-  static constexpr std::size_t kFrameSlots = 6;  // 0.2 s at 30 Hz
   static constexpr std::size_t kStatusSlots = 4;
+  static constexpr std::size_t kDepthSlots = 3;
 
   LcmUrl url_;
   std::shared_ptr<LcmBus> bus_;
   SendObserver observer_;
   std::array<std::string, kMessageKinds> channels_;
   MessageRing frames_, statuses_;
+  std::unique_ptr<DepthMessages> depth_messages_;
+  std::unique_ptr<MessageRing> depths_;
   std::string warning_;
   int wake_descriptor_ = -1;
   std::atomic<bool> stop_{false}, connected_{false};

@@ -11,6 +11,7 @@
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
 #include "firmware-app/config/config.hpp"
+#include "firmware-app/config/sensor_file.hpp"
 #include "firmware-app/outputs/run_report.hpp"
 #include "firmware-app/pipeline/run_pipeline.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
@@ -51,9 +52,6 @@ Result<Config> merged_config(const RunOptions& options) {
     return Error{ErrorKind::bad_input,
                  "no source: give --source URI or 'source' in the config, for example --source " +
                      std::string(kSourceExample)};
-  if (config.model.empty() && !brings_own_model(config.source))
-    return Error{ErrorKind::bad_input,
-                 "no model: give --model FILE or 'model' in the config; 'pliant model build' makes one"};
   return config;
 }
 
@@ -85,7 +83,10 @@ int run(const RunOptions& options) {
   if (!config) return report(config.error());
   Result<OpenSource> source = open_source(config->source);
   if (!source) return report(source.error());
-  Result<LoadedModel> model = load_model(config->model, config->source);
+  if (config->model.empty() && !brings_own_model(config->source))
+    return report({ErrorKind::bad_input,
+                   "no model: give --model FILE or 'model' in the config; 'pliant model build' makes one"});
+  Result<ModelFile> model = load_model(config->model, config->source);
   if (!model) return report(model.error());
 
   RunSettings settings;
@@ -147,14 +148,15 @@ void add_run(CLI::App& program, Work& work) {
   app->add_option("--lcm-url", options->lcm_url, "LCM network to publish on, 'none' to publish nothing")
       ->type_name("URL");
   app->add_option("--frames", options->frames, "Take this many frames from the source")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62))
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))
       ->type_name("N");
   app->add_option("--pace", options->pace,
                   "realtime: frames come when their stamps say, the newest wins; fast: every frame, as fast "
                   "as can be. Files are fast by default, live sources have their own pace")
-      ->check(CLI::IsMember({"realtime", "fast"}));
-  app->add_option("--threads", options->threads, "Threads that share the work of one frame")
-      ->check(CLI::Range(1, 64))
+      ->check(CLI::IsMember({"realtime", "fast"}).description(""))
+      ->type_name("realtime|fast");
+  app->add_option("--threads", options->threads, "Threads that share the work of one frame, 1 to 64")
+      ->check(CLI::Range(1, 64).description(""))
       ->type_name("N");
   app->add_option("--kernels", options->kernels, "Instruction set of the kernels; all give the same bytes")
       ->transform(CLI::CheckedTransformer(kKernelNames).description(""))

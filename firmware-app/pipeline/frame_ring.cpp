@@ -12,8 +12,12 @@ std::size_t frame_pixels(const Intrinsics& camera) {
 
 }  // namespace
 
+std::size_t FrameRing::bytes(const Intrinsics& camera) {
+  return frame_pixels(camera) * sizeof(std::uint16_t) * kSlots;
+}
+
 Result<MemoryBlock> FrameRing::allocate(const Intrinsics& camera) {
-  return MemoryBlock::allocate(frame_pixels(camera) * sizeof(std::uint16_t) * kSlots);
+  return MemoryBlock::allocate(bytes(camera));
 }
 
 FrameRing::FrameRing(const Intrinsics& camera, Policy policy, MemoryBlock& memory) : policy_(policy) {

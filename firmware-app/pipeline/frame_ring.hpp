@@ -25,6 +25,8 @@ class FrameRing {
     keep_all,  ///< push() waits for a free slot: no frame is lost
     newest     ///< push() never waits and pop() takes the newest; older frames are dropped and counted
   };
+  /// Of all slots.
+  [[nodiscard]] static std::size_t bytes(const Intrinsics& camera);
   [[nodiscard]] static Result<MemoryBlock> allocate(const Intrinsics& camera);
   /// `memory` comes from allocate() with the same camera and must outlive the ring.
   FrameRing(const Intrinsics& camera, Policy policy, MemoryBlock& memory);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <ctime>
+#include <optional>
 
 #include "firmware-app/measure/clock.hpp"
 
@@ -28,20 +29,20 @@ TrackingLoop::TrackingLoop(const Parts& parts, const Settings& settings)
 
 void TrackingLoop::run(RunFigures& figures) {
   touch_stack();
-  PathWatch watch(parts_.cost);
   parts_.tracker.observe(figures.profile.observer());
   std::int64_t end_ns = 0;
+  std::optional<PathWatch> watch(std::in_place, parts_.cost);
   while (const CapturedFrame* captured = parts_.ring.pop()) {
     if (first_arrival_ns_ == 0) first_arrival_ns_ = last_status_ns_ = captured->arrival_ns;
     take(*captured, figures);
     end_ns = monotonic_ns();
-    watch.update();
+    watch->update();
   }
   figures.seconds = static_cast<double>(end_ns - first_arrival_ns_) * 1e-9;
   figures.deadline_misses = work_.misses();
   figures.least_work_level = work_.least_level();
   if (parts_.publisher != nullptr && last_frame_ >= 0) publish_status(figures);
-  watch.update();
+  watch.reset();
   parts_.tracker.observe({});
   if (settings_.hash) figures.output_sha256 = hash_.hex();
 }

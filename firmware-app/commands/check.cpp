@@ -1,0 +1,89 @@
+// pliant check: is a config valid, and what memory and time follow from it.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "drivers/lcm/lcm_url.hpp"
+#include "drivers/model_files/describe_model.hpp"
+#include "firmware-app/commands/commands.hpp"
+#include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/commands/memory_plan.hpp"
+#include "firmware-app/config/config.hpp"
+#include "firmware-app/config/sensor_file.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// Everything that the config names, opened.
+struct Checked {
+  SensorFile sensor;
+  Intrinsics camera;
+  std::string camera_origin;
+  ModelFile model;
+  bool has_model = false;
+};
+
+Result<Checked> open_all(const Config& config) {
+  Checked all;
+  all.camera_origin = "no source or sensor given";
+  if (!config.sensor.description.empty()) {
+    Result<SensorFile> sensor = read_sensor(config.sensor.description);
+    if (!sensor) return sensor.error();
+    all.sensor = *sensor;
+    all.camera_origin = "from the sensor's description";
+  }
+  all.camera = all.sensor.intrinsics();
+  if (!config.source.empty()) {
+    const Result<OpenSource> source = open_source(config.source);
+    if (!source) return source.error();
+    all.camera = source->source->intrinsics();
+    all.camera_origin = "from the source";
+  }
+  if (!config.model.empty() || brings_own_model(config.source)) {
+    Result<ModelFile> model = load_model(config.model, config.source);
+    if (!model) return model.error();
+    all.model = std::move(*model);
+    all.has_model = true;
+  }
+  if (config.lcm.url != "none")
+    if (const Result<LcmUrl> url = LcmUrl::parse(config.lcm.url); !url) return url.error();
+  if (const Outcome prefix = check_channel_prefix(config.lcm.prefix); !prefix) return prefix.error();
+  return all;
+}
+
+int check(const std::string& path) {
+  const Result<Config> config = read_config(path);
+  if (!config) return report(config.error());
+  const Result<Checked> all = open_all(*config);
+  if (!all) return report(all.error());
+
+  std::string text = describe_config(*config) + "\n";
+  if (all->has_model) text += describe_model(all->model.view());
+  text += fmt::format("camera: {}x{}, {}\n", all->camera.width, all->camera.height, all->camera_origin);
+  if (all->has_model) {
+    TrackSettings settings;
+    settings.max_regions = config->track.max_regions;
+    settings.material = config->track.material;
+    text += fmt::format("memory, MB: {}\n", describe(plan_memory(all->model, all->camera, settings)));
+  } else {
+    text += "memory: follows from the model; none is given\n";
+  }
+  const double period = 1000 / all->sensor.mode.rate;
+  text += fmt::format("time: {:g} ms for a frame, one comes every {:.1f} ms{}\n", config->track.budget_ms,
+                      period, config->track.budget_ms > period ? "; frames will be dropped" : "");
+  text += fmt::format("{} is valid\n", path);
+  return print(text) ? kExitDone : kExitFailed;
+}
+
+}  // namespace
+
+void add_check(CLI::App& program, Work& work) {
+  CLI::App* app = program.add_subcommand("check", "Validate a config; show the memory and time that follow");
+  auto path = std::make_shared<std::string>();
+  app->add_option("--config", *path, "Config file (TOML)")->required()->type_name("FILE");
+  app->callback([path, &work] { work = [path] { return check(*path); }; });
+}
+
+}  // namespace pliant

@@ -1,0 +1,113 @@
+// pliant record: any source becomes a recording; a simulated one with its truth.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "drivers/recording/recording_writer.hpp"
+#include "drivers/simulated/truth_writer.hpp"
+#include "firmware-app/commands/commands.hpp"
+#include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/pipeline/stop_signal.hpp"
+
+namespace pliant {
+
+namespace {
+
+struct RecordOptions {
+  std::string source, output;
+  std::int64_t frames = -1;
+};
+
+/// What the frames of a source become.
+class Recorder {
+ public:
+  [[nodiscard]] Outcome open(const std::string& folder, const OpenSource& source) {
+    Result<std::unique_ptr<RecordingWriter>> writer =
+        RecordingWriter::create(folder, {source.source->intrinsics(), source.source->sensor()});
+    if (!writer) return writer.error();
+    writer_ = std::move(*writer);
+    simulated_ = source.simulated;
+    if (simulated_ == nullptr) return success();
+    Result<std::unique_ptr<TruthWriter>> truth = TruthWriter::create(folder, simulated_->mesh());
+    if (!truth) return truth.error();
+    truth_ = std::move(*truth);
+    return success();
+  }
+  [[nodiscard]] Outcome write(const DepthFrame& frame) {
+    const std::int64_t position = writer_->frames();
+    if (Outcome written = writer_->write(frame); !written) return written;
+    if (simulated_ == nullptr) return success();
+    const SimulatedTruth& truth = simulated_->truth();
+    if (truth.present)
+      if (Outcome written = writer_->write_truth(frame.utime, truth.parts.front()); !written) return written;
+    return truth_->write(position, truth);
+  }
+  [[nodiscard]] Outcome finish() {
+    if (truth_)
+      if (Outcome done = truth_->finish(); !done) return done;
+    return writer_->finish();
+  }
+  [[nodiscard]] std::int64_t frames() const { return writer_->frames(); }
+
+ private:
+  std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<TruthWriter> truth_;
+  const SimulatedSource* simulated_ = nullptr;
+};
+
+int record(const RecordOptions& options) {
+  const StopSignal stop;
+  Result<OpenSource> source = open_source(options.source);
+  if (!source) return report(source.error());
+  Recorder recorder;
+  if (const Outcome opened = recorder.open(options.output, *source); !opened) return report(opened.error());
+
+  LiveLine line;
+  SourceItem item;
+  std::int64_t taken = 0, bad_frames = 0;
+  std::string fault;
+  while (!StopSignal::requested() && (options.frames < 0 || taken < options.frames)) {
+    source->source->next(100, item);
+    if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
+    if (item.event == SourceEvent::timeout) continue;
+    ++taken;
+    if (item.event == SourceEvent::bad_frame) {
+      ++bad_frames;
+      fault = item.fault;
+      continue;
+    }
+    if (const Outcome written = recorder.write(item.frame); !written) {
+      line.clear();
+      return report(written.error());
+    }
+    line.show(fmt::format("recorded {} frames", recorder.frames()));
+  }
+  line.clear();
+  if (const Outcome finished = recorder.finish(); !finished) return report(finished.error());
+  std::string summary = fmt::format("recorded {} frames to {}", recorder.frames(), options.output);
+  if (bad_frames > 0) summary += fmt::format(", left out {} bad ones", bad_frames);
+  if (!print(summary + "\n")) return kExitFailed;
+  if (item.event == SourceEvent::lost) return report({ErrorKind::device, item.fault});
+  if (recorder.frames() == 0 && !StopSignal::requested())
+    return report(
+        {ErrorKind::bad_input, fault.empty() ? "the source has no frame" : "no frame is usable: " + fault});
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_record(CLI::App& program, Work& work) {
+  CLI::App* app = program.add_subcommand("record", "Write the frames of a source as a recording");
+  auto options = std::make_shared<RecordOptions>();
+  app->add_option("--source", options->source, kSourceHelp)->required()->type_name("URI");
+  app->add_option("-o,--output", options->output, "Folder of the new recording")
+      ->required()
+      ->type_name("DIR");
+  app->add_option("--frames", options->frames, "Take this many frames from the source")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))
+      ->type_name("N");
+  app->callback([options, &work] { work = [options] { return record(*options); }; });
+}
+
+}  // namespace pliant

@@ -1,0 +1,91 @@
+#include "firmware-app/demo/truth_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace pliant::demo {
+
+namespace {
+
+Vector3 vector_of(const Point3f& p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+
+}  // namespace
+
+RememberingSource::RememberingSource(std::unique_ptr<SimulatedSource> source) : source_(std::move(source)) {
+  for (Memory& memory : memories_) memory.vertices.resize(source_->mesh().vertices.size());
+}
+
+void RememberingSource::next(int timeout_ms, SourceItem& item) {
+  source_->next(timeout_ms, item);
+  if (item.event != SourceEvent::frame) return;
+  const SimulatedTruth& truth = source_->truth();
+  const std::lock_guard lock(mutex_);
+  Memory& memory = memories_[next_];
+  next_ = (next_ + 1) % memories_.size();
+  memory.number = item.frame.number;
+  memory.base = truth.parts.front();
+  std::copy(truth.vertices.begin(), truth.vertices.end(), memory.vertices.begin());
+}
+
+bool RememberingSource::recall(std::int64_t number, Memory& memory) const {
+  const std::lock_guard lock(mutex_);
+  for (const Memory& known : memories_)
+    if (known.number == number) {
+      memory.number = number;
+      memory.base = known.base;
+      std::copy(known.vertices.begin(), known.vertices.end(), memory.vertices.begin());
+      return true;
+    }
+  return false;
+}
+
+TruthCheck::TruthCheck(const ModelView& model, const RememberingSource& source)
+    : source_(source), mesh_rest_(source.mesh().vertices), centre_(model.centre()) {
+  truth_.vertices.resize(mesh_rest_.size());
+  // Each model point follows its three nearest vertices, the nearer the more: exact where it is a vertex.
+  for (const Point3f& point : model.positions()) {
+    const Vector3 p = vector_of(point);
+    std::array<double, 3> nearest;
+    nearest.fill(std::numeric_limits<double>::max());
+    Place place;
+    for (std::uint32_t v = 0; v < mesh_rest_.size(); ++v) {
+      double square = (vector_of(mesh_rest_[v]) - p).squaredNorm();
+      std::uint32_t vertex = v;
+      for (std::size_t k = 0; k < nearest.size(); ++k)
+        if (square < nearest[k]) {
+          std::swap(square, nearest[k]);
+          std::swap(vertex, place.vertices[k]);
+        }
+    }
+    double sum = 0;
+    for (std::size_t k = 0; k < nearest.size(); ++k) sum += place.weights[k] = 1 / (nearest[k] + 1e-12);
+    for (double& weight : place.weights) weight /= sum;
+    rest_.push_back(p);
+    places_.push_back(place);
+  }
+}
+
+void TruthCheck::look(const TrackResult& result) {
+  if (result.state != TrackState::tracking || !source_.recall(result.frame, truth_)) return;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (result.labels[i] == kNotObserved) continue;
+    // The base's motion carries the point exactly; what the mesh does beyond it is interpolated.
+    Vector3 where = truth_.base * rest_[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = places_[i].vertices[k];
+      where +=
+          places_[i].weights[k] * (vector_of(truth_.vertices[v]) - truth_.base * vector_of(mesh_rest_[v]));
+    }
+    position_.add(std::llround((vector_of(result.positions[i]) - where).norm() * 1e6));
+  }
+  if (result.regions.empty() || result.regions.front().id != 0) return;
+  base_shift_.add(std::llround((result.pose * centre_ - truth_.base * centre_).norm() * 1e6));
+  const double cosine = cos_angle(truth_.base.rotation.transpose() * result.pose.rotation);
+  base_angle_.add(std::llround(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180e3 / std::numbers::pi));
+}
+
+}  // namespace pliant::demo
