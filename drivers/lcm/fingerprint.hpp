@@ -138,4 +138,22 @@ inline constexpr std::uint64_t kStatusFingerprint =
         .field("string", "last_error")
         .value();
 
+inline constexpr std::uint64_t kDepthFingerprint = FingerprintBuilder()
+                                                       .field("int64_t", "utime")
+                                                       .field("int64_t", "frame")
+                                                       .field("int16_t", "part")
+                                                       .field("int16_t", "parts")
+                                                       .field("int32_t", "width")
+                                                       .field("int32_t", "height")
+                                                       .field("double", "fx")
+                                                       .field("double", "fy")
+                                                       .field("double", "cx")
+                                                       .field("double", "cy")
+                                                       .field("double", "depth_scale")
+                                                       .field("int32_t", "first_row")
+                                                       .field("int32_t", "num_rows")
+                                                       .field("int32_t", "num_bytes")
+                                                       .field("byte", "depth", {{"num_bytes", true}})
+                                                       .value();
+
 }  // namespace pliant::wire

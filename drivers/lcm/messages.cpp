@@ -68,7 +68,7 @@ bool whole(const wire::Reader& in) {
 
 std::string_view channel_suffix(MessageKind kind) noexcept {
   constexpr std::array<std::string_view, kMessageKinds> kSuffixes = {"_POSE", "_REGIONS", "_DEFORMED",
-                                                                     "_STATUS"};
+                                                                     "_STATUS", "_DEPTH"};
   return kSuffixes[static_cast<std::size_t>(kind)];
 }
 
@@ -172,6 +172,35 @@ bool decode(std::span<const std::uint8_t> body, StatusMessage& message) {
     *counter = in.get<std::int64_t>();
   }
   message.last_error = in.get_string();
+  return whole(in);
+}
+
+bool decode(std::span<const std::uint8_t> body, DepthMessage& message) {
+  wire::Reader in(body);
+  if (!starts_with(in, wire::kDepthFingerprint)) return false;
+  message.utime = in.get<std::int64_t>();
+  message.frame = in.get<std::int64_t>();
+  if (!read_parts(in, message.part, message.parts)) return false;
+  Intrinsics& camera = message.camera;
+  camera.width = in.get<std::int32_t>();
+  camera.height = in.get<std::int32_t>();
+  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.depth_scale}) {
+    *value = in.get<double>();
+  }
+  message.first_row = in.get<std::int32_t>();
+  const auto rows = in.get<std::int32_t>();
+  const std::size_t count = in.get_count(1, kMaxDepthMessageBytes);
+  if (!in.ok() || intrinsics_fault(camera) != nullptr || message.first_row < 0 || rows < 1 ||
+      rows > camera.height - message.first_row ||
+      count !=
+          sizeof(std::uint16_t) * static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(rows)) {
+    return false;
+  }
+  const auto bytes = in.get_bytes(count);
+  message.depth.resize(bytes.size() / 2);
+  for (std::size_t i = 0; i < message.depth.size(); ++i) {
+    message.depth[i] = static_cast<std::uint16_t>(bytes[2 * i] | (bytes[2 * i + 1] << 8));
+  }
   return whole(in);
 }
 

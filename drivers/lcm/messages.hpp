@@ -1,4 +1,4 @@
-// What the four messages hold, on the receiving side, and how they are decoded. See types/*.lcm for the
+// What the messages hold, on the receiving side, and how they are decoded. See types/*.lcm for the
 // meaning, units and frames of every field.
 #pragma once
 
@@ -9,20 +9,23 @@
 #include <string_view>
 #include <vector>
 
+#include "core/camera/intrinsics.hpp"
 #include "core/geometry/rigid_transform.hpp"
 #include "core/track_result.hpp"
 
 namespace pliant {
 
-/// The channels, in the order in which a frame's messages are sent.
-enum class MessageKind : std::uint8_t { pose, regions, deformed, status };
-inline constexpr int kMessageKinds = 4;
+/// The channels; a frame's messages are sent in this order.
+enum class MessageKind : std::uint8_t { pose, regions, deformed, status, depth };
+inline constexpr int kMessageKinds = 5;
 
-/// "_POSE", "_REGIONS", "_DEFORMED", "_STATUS".
+/// "_POSE", "_REGIONS", "_DEFORMED", "_STATUS", "_DEPTH".
 [[nodiscard]] std::string_view channel_suffix(MessageKind kind) noexcept;
 
-/// No message body is longer.
+/// No message body is longer, but for depth.
 inline constexpr std::size_t kMaxMessageBytes = 16000;
+/// Fits one datagram with the channel's name.
+inline constexpr std::size_t kMaxDepthMessageBytes = 60000;
 
 struct PoseMessage {
   std::int64_t utime = 0;
@@ -79,6 +82,14 @@ struct StatusMessage {
   std::string last_error;
 };
 
+struct DepthMessage {
+  std::int64_t utime = 0, frame = 0;
+  std::int16_t part = 0, parts = 1;
+  Intrinsics camera;  ///< of the whole picture
+  std::int32_t first_row = 0;
+  std::vector<std::uint16_t> depth;  ///< whole rows, from `first_row` on; raw units, 0 = no reading
+};
+
 /// Decode a message body of any origin. False, and `message` of no use, where the body is not a whole, sound
 /// message of its type: wrong fingerprint, cut short, bytes left over, counts or indices out of range,
 /// numbers that are not finite, quaternions that are not unit. Storage in `message` is reused.
@@ -86,5 +97,6 @@ struct StatusMessage {
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, RegionsMessage& message);
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, DeformedMessage& message);
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, StatusMessage& message);
+[[nodiscard]] bool decode(std::span<const std::uint8_t> body, DepthMessage& message);
 
 }  // namespace pliant

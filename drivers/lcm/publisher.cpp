@@ -75,6 +75,11 @@ LcmPublisher::LcmPublisher(LcmUrl url, std::shared_ptr<LcmBus> bus, const LcmSet
     channels_[static_cast<std::size_t>(kind)] =
         settings.prefix + std::string(channel_suffix(static_cast<MessageKind>(kind)));
   }
+  if (settings.depth_width > 0 && settings.depth_height > 0) {
+    depth_messages_ = std::make_unique<DepthMessages>(settings.depth_width, settings.depth_height);
+    depths_ = std::make_unique<MessageRing>(kDepthSlots, depth_messages_->max_bodies(),
+                                            depth_messages_->max_bytes());
+  }
   connected_ = bus_ != nullptr;
   wake_descriptor_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor_ < 0) return;
@@ -119,6 +124,17 @@ void LcmPublisher::publish_status(const StatusContent& content) noexcept {
   wake();
 }
 
+void LcmPublisher::publish_depth(const DepthFrame& frame, const Intrinsics& camera) noexcept {
+  // Pictures larger than announced, or never announced, are counted as failures.
+  const auto bodies =
+      depth_messages_ == nullptr ? std::span<const MessageBody>{} : depth_messages_->encode(frame, camera);
+  if (bodies.empty() || !depths_->push(bodies, frame.utime)) {
+    failures_.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  wake();
+}
+
 void LcmPublisher::wake() noexcept {
   handed_over_.fetch_add(1, std::memory_order_release);
   const std::uint64_t one = 1;
@@ -138,7 +154,8 @@ bool LcmPublisher::flush(int timeout_ms) const noexcept {
 
 SendCounters LcmPublisher::counters() const noexcept {
   return {messages_.load(std::memory_order_relaxed), bytes_.load(std::memory_order_relaxed),
-          frames_.gave_way(), failures_.load(std::memory_order_relaxed)};
+          frames_.gave_way() + (depths_ != nullptr ? depths_->gave_way() : 0),
+          failures_.load(std::memory_order_relaxed)};
 }
 
 void LcmPublisher::run() noexcept {
@@ -154,6 +171,7 @@ void LcmPublisher::run() noexcept {
     do {
       sent = send_waiting(statuses_, false);
       sent = send_waiting(frames_, true) || sent;
+      sent = (depths_ != nullptr && send_waiting(*depths_, false)) || sent;
     } while (sent);
     woken_for_.store(handed_over, std::memory_order_release);
     if (stopping) break;

@@ -49,6 +49,7 @@ LcmSubscriber::~LcmSubscriber() {
 
 bool LcmSubscriber::subscribe() {
   for (int kind = 0; kind < kMessageKinds; ++kind) {
+    if (static_cast<MessageKind>(kind) == MessageKind::depth && !handlers_.depth) continue;
     std::string pattern;
     // LCM takes a regular expression; '.' is the only allowed character that means something else there.
     for (const char c : prefix_) pattern += c == '.' ? std::string("\\.") : std::string(1, c);
@@ -101,6 +102,9 @@ void LcmSubscriber::take(std::span<const std::uint8_t> body, std::string_view ch
   } else if (suffix == channel_suffix(MessageKind::status)) {
     kind = MessageKind::status;
     sound = decode_and_tell(body, status_, handlers_.status);
+  } else if (suffix == channel_suffix(MessageKind::depth)) {
+    kind = MessageKind::depth;
+    sound = decode_and_tell(body, depth_, handlers_.depth);
   }
   if (!sound) {
     ++counters_.garbage;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <string_view>
 
@@ -22,13 +23,17 @@ class LcmSubscriber {
     std::function<void(const RegionsMessage&)> regions;
     std::function<void(const DeformedMessage&)> deformed;
     std::function<void(const StatusMessage&)> status;
+    std::function<void(const DepthMessage&)>
+        depth;  ///< the depth channel is only subscribed to when this is set
   };
   struct Counters {
     std::array<std::int64_t, kMessageKinds> decoded{};  ///< by MessageKind
     std::int64_t garbage = 0;  ///< on our channels, but not a sound message of the channel's type
     std::int64_t bytes = 0;    ///< of the bodies decoded
     [[nodiscard]] std::int64_t of(MessageKind kind) const { return decoded[static_cast<std::size_t>(kind)]; }
-    [[nodiscard]] std::int64_t total() const { return decoded[0] + decoded[1] + decoded[2] + decoded[3]; }
+    [[nodiscard]] std::int64_t total() const {
+      return std::accumulate(decoded.begin(), decoded.end(), std::int64_t{0});
+    }
   };
 
   /// `url` as LcmUrl takes it; file://LOG?speed=0 reads a log as fast as it can.
@@ -65,6 +70,7 @@ class LcmSubscriber {
   RegionsMessage regions_;
   DeformedMessage deformed_;
   StatusMessage status_;
+  DepthMessage depth_;
 };
 
 }  // namespace pliant

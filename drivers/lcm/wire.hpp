@@ -49,6 +49,22 @@ class Writer {
     if (!bytes.empty()) std::memcpy(out_.data() + at_, bytes.data(), bytes.size());
     at_ += bytes.size();
   }
+  /// Depth readings as bytes, low byte first.
+  void put_little_endian(std::span<const std::uint16_t> values) noexcept {
+    if (out_.size() - at_ < values.size_bytes()) {
+      ok_ = false;
+      return;
+    }
+    if constexpr (std::endian::native == std::endian::little) {
+      if (!values.empty()) std::memcpy(out_.data() + at_, values.data(), values.size_bytes());
+      at_ += values.size_bytes();
+    } else {
+      for (const std::uint16_t value : values) {
+        out_[at_++] = static_cast<std::uint8_t>(value & 0xFFU);
+        out_[at_++] = static_cast<std::uint8_t>(value >> 8);
+      }
+    }
+  }
   /// An LCM string: its length with the closing zero, the characters, the zero. At most `limit` characters;
   /// cut before a zero and never inside a UTF-8 sequence.
   void put_string(std::string_view text, std::size_t limit) noexcept;
