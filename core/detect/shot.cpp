@@ -51,12 +51,11 @@ void ShotDescriber::lay_out(Workspace& workspace) noexcept {
   neighbours_ = workspace.take<Neighbour>(kMostNeighbours);
 }
 
-bool ShotDescriber::describe(const OrientedPoints& points, const PointGrid& grid, std::size_t index,
-                             double support_radius, Descriptor& descriptor, LocalFrame& frame,
-                             float* lean) noexcept {
+bool ShotDescriber::describe_at(const OrientedPoints& points, const PointGrid& grid, const Point3f& centre,
+                                double support_radius, Descriptor& descriptor, LocalFrame& frame,
+                                float* lean) noexcept {
   descriptor.bins.fill(0);
   frame.axes.fill(0);
-  const Point3f centre = points.positions[index];
   const float inverse = static_cast<float>(1.0 / support_radius);
   std::size_t count = 0;
   grid.visit_within(centre, static_cast<float>(support_radius), kMostNeighbours,

@@ -45,7 +45,13 @@ class ShotDescriber {
   /// small, means little.
   [[nodiscard]] bool describe(const OrientedPoints& points, const PointGrid& grid, std::size_t index,
                               double support_radius, Descriptor& descriptor, LocalFrame& frame,
-                              float* lean = nullptr) noexcept;
+                              float* lean = nullptr) noexcept {
+    return describe_at(points, grid, points.positions[index], support_radius, descriptor, frame, lean);
+  }
+  /// As describe(), at any place on or near the surface.
+  [[nodiscard]] bool describe_at(const OrientedPoints& points, const PointGrid& grid, const Point3f& centre,
+                                 double support_radius, Descriptor& descriptor, LocalFrame& frame,
+                                 float* lean = nullptr) noexcept;
 
  private:
   struct Neighbour {
