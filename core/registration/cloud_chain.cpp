@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kCoarsePoints = 500;
 constexpr std::size_t kScorePoints = 600;
 constexpr std::size_t kFinePoints = 2500;
+constexpr std::size_t kSpeck = 6;           // points: fewer off their surroundings are noise
 constexpr std::size_t kSingleFrames = 256;  // matches whose own poses are tried
 
 Vector3 to_vector(const Point3f& p) noexcept {
@@ -111,12 +112,21 @@ void refine(const RegistrationState& s, std::span<const std::uint16_t> which, do
   if (align_to_cloud(s.model, which, base_target(s), fine, refined) > 0) pose = refined;
 }
 
-/// Median of the scene's spread around the model's planes: its noise, metres.
-double scene_noise(RegistrationState& s, const RigidTransform& pose) noexcept {
+/// Takes the readings of the scene under a pose.
+void measure(RegistrationState& s, const RigidTransform& pose, double noise, bool only_free) noexcept {
+  const std::span<const std::uint8_t> taken =
+      only_free ? std::span<const std::uint8_t>(s.base_taken.first(s.base_count))
+                : std::span<const std::uint8_t>();
+  s.readings.measure(s.model, s.model_index, s.base.first(s.base_count), taken, pose, 1.5 * s.spacing,
+                     std::max(2.5 * s.spacing, 4 * noise));
+}
+
+/// Median of the readings' spread: the scene's noise, metres. After measure().
+double scene_noise(RegistrationState& s) noexcept {
   std::size_t count = 0;
   const std::size_t most = std::min<std::size_t>(800, s.model.size());
   for (std::size_t i = 0; i < most; ++i) {
-    const SurfaceGap gap = surface_gap(s.model, i, pose, s.base_grid, 1.5 * s.spacing, 3 * s.spacing);
+    const SurfaceGap gap = s.readings.gap(s.model, i);
     if (gap.count >= 4) s.scratch[count++] = gap.spread;
   }
   if (count < 20) return 0;
@@ -125,35 +135,38 @@ double scene_noise(RegistrationState& s, const RigidTransform& pose) noexcept {
   return static_cast<double>(s.scratch[count / 2]);
 }
 
-/// A point is off a region when its surface is off by more than a spacing or four times what noise leaves of
-/// the mean of `count` readings.
-bool on_surface(const RegistrationState& s, const SurfaceGap& gap, double noise) noexcept {
-  if (gap.count == 0) return false;
+/// How far a point's surroundings are off the surface as a share of what is allowed: a spacing, or four times
+/// what noise leaves of the mean of the readings. Negative where the scene shows nothing. After measure().
+float off_surface(const RegistrationState& s, std::size_t i, double noise) noexcept {
+  const SurfaceGap gap = s.readings.gap(s.model, i);
+  if (gap.count == 0) return -1;
   const double left = 4 * noise / std::sqrt(static_cast<double>(gap.count));
-  return static_cast<double>(std::fabs(gap.along)) <= std::max(s.model.spacing(), left);
+  return static_cast<float>(static_cast<double>(std::fabs(gap.along)) / std::max(s.model.spacing(), left));
 }
 
-SurfaceGap gap_of(const RegistrationState& s, std::size_t i, const RigidTransform& pose,
-                  double noise) noexcept {
-  const double depth = std::max(2.5 * s.spacing, 4 * noise);
-  return surface_gap(s.model, i, pose, s.base_grid, 1.8 * s.spacing, depth);
+bool on_surface(float off) noexcept {
+  return off >= 0 && off <= 1;
 }
 
 /// Marks the scene points that lie on the region's points.
 void take_points(RegistrationState& s, const InstanceBuffers& buffers, std::int8_t label,
                  const RigidTransform& pose, double noise) noexcept {
-  const FastTransform fast(pose);
+  const FastTransform back(pose.inverse());
   const auto across = static_cast<float>(1.5 * s.spacing);
   const auto deep = static_cast<float>(std::max(s.model.spacing(), 3 * noise));
-  for (std::size_t i = 0; i < s.model.size(); ++i) {
-    if (buffers.labels[i] != label) continue;
-    const Point3f p = fast.point(s.model.positions()[i]);
-    const Point3f n = fast.direction(s.model.normals()[i]);
-    s.base_grid.visit_within(p, std::sqrt(across * across + deep * deep), 256,
-                             [&](std::uint32_t j, const Point3f& q, float) {
-                               const float along = n.x * (q.x - p.x) + n.y * (q.y - p.y) + n.z * (q.z - p.z);
-                               if (std::fabs(along) <= deep) s.base_taken[j] = 1;
-                             });
+  const float reach = std::sqrt(across * across + deep * deep);
+  for (std::size_t j = 0; j < s.base_count; ++j) {
+    if (s.base_taken[j] != 0) continue;
+    const Point3f p = back.point(s.base[j]);
+    float square = 0;
+    const std::uint32_t i = s.model_index.nearest(p, reach, square);
+    if (i == PointGrid::kNone || buffers.labels[i] != label) continue;
+    const Point3f& m = s.model.positions()[i];
+    const Normal16& n = s.model.normals()[i];
+    const float along = (static_cast<float>(n.x) * (p.x - m.x) + static_cast<float>(n.y) * (p.y - m.y) +
+                         static_cast<float>(n.z) * (p.z - m.z)) *
+                        (1.0F / 16384);
+    if (std::fabs(along) <= deep) s.base_taken[j] = 1;
   }
 }
 
@@ -174,16 +187,11 @@ struct Gain {
 /// somewhere the two transforms agree within a sixth of the radius.
 Gain gain_of(RegistrationState& s, const RigidTransform& pose, const RigidTransform& base,
              double noise) noexcept {
-  for (std::size_t i = 0; i < s.model.size(); ++i) {
-    s.gap_along[i] = 0;
-    if (s.open[i] == 0) continue;
-    const SurfaceGap gap = gap_of(s, i, pose, noise);
-    const bool free = gap.nearest != PointGrid::kNone && s.base_taken[gap.nearest] == 0;
-    if (on_surface(s, gap, noise) && free) s.gap_along[i] = 1;
-  }
+  measure(s, pose, noise, true);
+  for (std::size_t i = 0; i < s.model.size(); ++i) s.off[i] = s.open[i] != 0 ? off_surface(s, i, noise) : -1;
   Gain gain;
   gain.piece = s.islands.pieces(
-      s.model, [&](std::size_t i) { return s.gap_along[i] > 0; }, gain.points);
+      s.model, [&](std::size_t i) { return on_surface(s.off[i]); }, gain.points);
   double least = 1e300;
   for (std::size_t i = 0; i < s.model.size(); ++i) {
     if (s.islands.piece()[i] != gain.piece || gain.piece == 0) continue;
@@ -261,21 +269,67 @@ double find_instance(RegistrationState& s, RigidTransform& pose) noexcept {
   return best.score;
 }
 
+namespace {
+
+/// Where regions meet, a point belongs to the one whose surface is nearer; then each region is aligned on its
+/// own points.
+void settle_borders(RegistrationState& s, InstanceBuffers& buffers, std::span<RigidTransform> poses,
+                    double noise) noexcept {
+  const std::size_t n = s.model.size();
+  for (int pass = 0; pass < 2; ++pass) {
+    // s.off: the best so far; s.proposal: whose it is.
+    for (std::size_t i = 0; i < n; ++i) {
+      s.off[i] = 2;
+      s.proposal[i] = static_cast<std::uint32_t>(kNotObserved + 2);
+    }
+    for (std::size_t r = 0; r < poses.size(); ++r) {
+      measure(s, poses[r], noise, false);
+      const auto label = static_cast<std::int8_t>(r);
+      for (std::size_t i = 0; i < n; ++i) {
+        bool beside = buffers.labels[i] == label;
+        for (const std::uint16_t j : s.model.neighbours(i))
+          beside = beside || (j != kNoNeighbour && buffers.labels[j] == label);
+        if (!beside) continue;
+        const float off = off_surface(s, i, noise);
+        if (!on_surface(off) || off >= s.off[i]) continue;
+        s.off[i] = off;
+        s.proposal[i] = static_cast<std::uint32_t>(label + 2);
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i)
+      buffers.labels[i] = static_cast<std::int8_t>(static_cast<int>(s.proposal[i]) - 2);
+    s.islands.filter(s.model, static_cast<std::size_t>(0.005 * static_cast<double>(n)), buffers.labels,
+                     [&](std::size_t i, std::int8_t label) { return label >= 0 && buffers.labels[i] >= 0; });
+    for (std::size_t i = 0; i < s.base_count; ++i)
+      s.base_taken[i] = static_cast<std::uint8_t>(s.base_taken[i] & 2);
+    for (std::size_t r = 0; r < poses.size(); ++r) {
+      std::size_t part = 0;
+      for (std::size_t i = 0; i < n && part < kFinePoints; ++i)
+        if (buffers.labels[i] == static_cast<std::int8_t>(r)) s.part[part++] = static_cast<std::uint16_t>(i);
+      if (part >= 40) refine(s, s.part.first(part), noise, poses[r]);
+    }
+    for (std::size_t r = 0; r < poses.size(); ++r)
+      take_points(s, buffers, static_cast<std::int8_t>(r), poses[r], noise);
+  }
+}
+
+}  // namespace
+
 void build_chain(RegistrationState& s, const RigidTransform& first, InstanceBuffers& buffers,
                  InstanceResult& instance) noexcept {
   const std::size_t n = s.model.size();
   std::array<RigidTransform, limits::kMaxRegions> poses;
   std::size_t regions = 1;
   poses[0] = first;
-  const double noise = scene_noise(s, first);
+  measure(s, first, 0, false);
+  const double noise = scene_noise(s);
   refine(s, s.prefix.first(std::min(kFinePoints, n)), noise, poses[0]);
-  std::uint32_t observed = 0, explained = 0;
+  measure(s, poses[0], noise, false);
+  std::uint32_t explained = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const SurfaceGap gap = gap_of(s, i, poses[0], noise);
-    const bool on = on_surface(s, gap, noise);
+    const bool on = on_surface(off_surface(s, i, noise));
     buffers.labels[i] = on ? std::int8_t{0} : kNotObserved;
     s.open[i] = on ? 0 : 1;
-    observed += gap.count > 0 ? 1 : 0;
     explained += on ? 1 : 0;
   }
   take_points(s, buffers, 0, poses[0], noise);
@@ -294,47 +348,13 @@ void build_chain(RegistrationState& s, const RigidTransform& first, InstanceBuff
     take_points(s, buffers, label, poses[regions], noise);
     ++regions;
   }
-  // Where regions meet, a point belongs to the one whose surface is nearer; then each is aligned on its own
-  // points.
-  for (int pass = 0; pass < (regions > 1 ? 2 : 0); ++pass) {
-    for (std::size_t i = 0; i < n; ++i) {
-      float nearest = 0;
-      std::int8_t label = kNotObserved;
-      for (std::size_t r = 0; r < regions; ++r) {
-        // Of its own region and those next to it.
-        bool beside = buffers.labels[i] == static_cast<std::int8_t>(r);
-        for (const std::uint16_t j : s.model.neighbours(i))
-          beside = beside || (j != kNoNeighbour && buffers.labels[j] == static_cast<std::int8_t>(r));
-        if (!beside) continue;
-        const SurfaceGap gap = gap_of(s, i, poses[r], noise);
-        if (!on_surface(s, gap, noise)) continue;
-        const float off = std::fabs(gap.along);
-        if (label < 0 || off < nearest) {
-          nearest = off;
-          label = static_cast<std::int8_t>(r);
-        }
-      }
-      s.proposal[i] = static_cast<std::uint32_t>(label + 2);
-    }
-    for (std::size_t i = 0; i < n; ++i)
-      buffers.labels[i] = static_cast<std::int8_t>(static_cast<int>(s.proposal[i]) - 2);
-    s.islands.filter(s.model, static_cast<std::size_t>(0.005 * static_cast<double>(n)), buffers.labels,
-                     [&](std::size_t i, std::int8_t label) {
-                       return label >= 0 && buffers.labels[i] >= 0 &&
-                              on_surface(s, gap_of(s, i, poses[static_cast<std::size_t>(label)], noise),
-                                         noise);
-                     });
-    for (std::size_t i = 0; i < s.base_count; ++i)
-      s.base_taken[i] = static_cast<std::uint8_t>(s.base_taken[i] & 2);
-    for (std::size_t r = 0; r < regions; ++r) {
-      std::size_t part = 0;
-      for (std::size_t i = 0; i < n && part < kFinePoints; ++i)
-        if (buffers.labels[i] == static_cast<std::int8_t>(r)) s.part[part++] = static_cast<std::uint16_t>(i);
-      if (part >= 40) refine(s, s.part.first(part), noise, poses[r]);
-    }
-    for (std::size_t r = 0; r < regions; ++r)
-      take_points(s, buffers, static_cast<std::int8_t>(r), poses[r], noise);
-  }
+  if (regions > 1) settle_borders(s, buffers, {poses.data(), regions}, noise);
+  // Specks within a region that miss its bound by little are its own: noise.
+  measure(s, poses[0], noise, false);
+  for (std::size_t i = 0; i < n; ++i) s.off[i] = off_surface(s, i, noise);
+  s.islands.filter(s.model, kSpeck, buffers.labels, [&](std::size_t i, std::int8_t label) {
+    return label == 0 && buffers.labels[i] < 0 && s.off[i] < 1.5F;
+  });
   // The largest region is the base.
   std::array<std::uint32_t, limits::kMaxRegions> sizes{};
   for (std::size_t i = 0; i < n; ++i)
@@ -357,15 +377,17 @@ void build_chain(RegistrationState& s, const RigidTransform& first, InstanceBuff
     region.transform = poses[static_cast<std::size_t>(rank[k])];
   }
   instance.regions = buffers.regions.first(regions);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (buffers.labels[i] < 0) continue;
-    const SurfaceGap gap =
-        gap_of(s, i, buffers.regions[static_cast<std::size_t>(buffers.labels[i])].transform, noise);
-    s.gap_nearest[i] = gap.nearest;
-    buffers.residuals[i] = gap.distance;
-    RegionResult& region = buffers.regions[static_cast<std::size_t>(buffers.labels[i])];
-    ++region.points;
-    region.rms += static_cast<double>(gap.along * gap.along);
+  for (std::size_t k = 0; k < regions; ++k) {
+    RegionResult& region = buffers.regions[k];
+    measure(s, region.transform, noise, false);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (buffers.labels[i] != region.id) continue;
+      s.gap_nearest[i] = s.readings.nearest(i);
+      buffers.residuals[i] = s.readings.distance(i);
+      const SurfaceGap gap = s.readings.gap(s.model, i);
+      ++region.points;
+      region.rms += static_cast<double>(gap.along * gap.along);
+    }
   }
   for (std::size_t k = 0; k < regions; ++k)
     if (buffers.regions[k].points > 0)

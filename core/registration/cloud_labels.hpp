@@ -14,19 +14,34 @@
 
 namespace pliant {
 
-/// What the scene shows beside one model point under one transform.
+/// What the scene shows of the surface around one model point under one transform.
 struct SurfaceGap {
-  float along = 0;   ///< mean distance of the scene's points around it along the model's normal, metres
-  float spread = 0;  ///< their root mean square around that mean, metres
-  std::uint32_t count = 0;                   ///< of these points, 0: the scene shows nothing there
-  std::uint32_t nearest = PointGrid::kNone;  ///< scene point
-  float distance = 0;                        ///< to it, metres
+  float along = 0;          ///< mean signed distance of the readings from the model's surface, metres
+  float spread = 0;         ///< root mean square around that mean, metres
+  std::uint32_t count = 0;  ///< of readings, 0: the scene shows nothing there
 };
 
-/// Looks at the scene points within `across` of the line through model point i along its normal, up to
-/// `depth` to either side (metres).
-[[nodiscard]] SurfaceGap surface_gap(const ModelView& model, std::size_t i, const RigidTransform& pose,
-                                     const PointGrid& grid, double across, double depth) noexcept;
+/// Every scene point is a reading of the model point that it lies nearest to: its distance from that point's
+/// tangent plane. What a model point's surroundings say is the mean over itself and its neighbours in the
+/// surface graph, so that curvature does not count as distance while noise averages out.
+class SurfaceReadings {
+ public:
+  void lay_out(Workspace& workspace, std::size_t model_points) noexcept;
+  /// Takes the readings of all `scene` points under `pose` (scene <- model); points with a non-zero entry in
+  /// `taken` (may be empty) are passed over. Readings farther than `depth` off the plane or `across` beside
+  /// the point (metres) are none. `index` holds the model's positions.
+  void measure(const ModelView& model, const PointGrid& index, std::span<const Point3f> scene,
+               std::span<const std::uint8_t> taken, const RigidTransform& pose, double across,
+               double depth) noexcept;
+  [[nodiscard]] SurfaceGap gap(const ModelView& model, std::size_t i) const noexcept;
+  /// The nearest scene point that is a reading of point i, PointGrid::kNone for none.
+  [[nodiscard]] std::uint32_t nearest(std::size_t i) const noexcept { return nearest_[i]; }
+  [[nodiscard]] float distance(std::size_t i) const noexcept { return distance_[i]; }
+
+ private:
+  std::span<float> sum_, squares_, distance_;
+  std::span<std::uint32_t> count_, nearest_;
+};
 
 /// Gives islands of a label (connected pieces of the model's surface graph) of fewer than `least` points to
 /// the label that surrounds them; a piece that touches no other label stays. Two passes.

@@ -69,10 +69,12 @@ void lay_out(Workspace& workspace, const ModelView& model, std::size_t scene_poi
   s.matcher.lay_out(workspace, s.settings.model_keypoints);
   s.grouping.lay_out(workspace, keys);
   s.islands.lay_out(workspace, m);
+  s.readings.lay_out(workspace, m);
+  s.model_index.lay_out(workspace, m);
   s.prefix = workspace.take<std::uint16_t>(m);
   s.part = workspace.take<std::uint16_t>(m);
   s.open = workspace.take<std::uint8_t>(m);
-  s.gap_along = workspace.take<float>(m);
+  s.off = workspace.take<float>(m);
   s.gap_nearest = workspace.take<std::uint32_t>(m);
   s.proposal = workspace.take<std::uint32_t>(m);
   s.claimed = workspace.take<std::uint32_t>(n);
@@ -174,6 +176,7 @@ const char* CloudRegistration::start(const ModelView& model, std::size_t scene_p
   state_ = state;
   state->matcher.start(state->settings.kernels);
   state->support = model.header().support_radius;
+  if (!state->model_index.build(model.positions(), 1.5 * model.spacing())) return "the model has no spacing";
   for (std::size_t i = 0; i < model.size(); ++i) state->prefix[i] = static_cast<std::uint16_t>(i);
   return nullptr;
 }

@@ -62,18 +62,20 @@ struct RegistrationState {
   std::span<const LocalFrame> model_frames;
   std::span<Descriptor> own_descriptors;  ///< where more are asked for than the model holds
   std::span<LocalFrame> own_frames;
-  PointGrid model_grid;
+  PointGrid model_grid;   ///< over the model's points, for descriptors
+  PointGrid model_index;  ///< the same in cells of the spacing, for nearest points
 
   ShotDescriber describer;
   DescriptorMatcher matcher;
   Grouping grouping;
   IslandFilter islands;
+  SurfaceReadings readings;
 
   // One entry a model point.
   std::span<std::uint16_t> prefix;  ///< 0, 1, 2, …
   std::span<std::uint16_t> part;    ///< points of a region under test
   std::span<std::uint8_t> open;     ///< not explained by a region yet
-  std::span<float> gap_along;
+  std::span<float> off;             ///< how far a point is off the region under test, negative: nothing seen
   std::span<std::uint32_t> gap_nearest;
   std::span<std::uint32_t> proposal;  ///< base point proposed to a deformed point
   std::span<std::uint32_t> claimed;   ///< per base point: deformed model point + 1
