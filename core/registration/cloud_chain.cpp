@@ -203,9 +203,10 @@ Gain gain_of(RegistrationState& s, const RigidTransform& pose, const RigidTransf
   return gain;
 }
 
-/// One more rigid region among the open points; false when there is none.
-bool find_region(RegistrationState& s, const RigidTransform& base, double noise, RigidTransform& pose,
-                 std::uint32_t& piece) noexcept {
+/// One more rigid region among the open points; false when there is none. Its points are
+/// marked in s.proposal: all of them that its pose explains in pieces worth the name.
+bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
+                 RigidTransform& pose) noexcept {
   const auto least = static_cast<std::uint32_t>(std::max(40.0, 0.02 * static_cast<double>(s.model.size())));
   std::array<MatchGroup, 4> groups;
   const std::size_t matches = collect_matches(s, [&](std::size_t i) { return s.open[i] != 0; });
@@ -229,6 +230,7 @@ bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
       best = gain;
       pose = trial;
     }
+    if (2 * best.points > part) break;  // most of what is open: nothing can beat it
   }
   if (best.points < least) return false;
   // Once more on the piece alone.
@@ -239,7 +241,14 @@ bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
     for (std::size_t i = 0; i < s.model.size() && part < kFinePoints; ++i)
       if (s.islands.piece()[i] == gain.piece) s.part[part++] = static_cast<std::uint16_t>(i);
     if (pass == 0) refine(s, s.part.first(part), noise, pose);
-    piece = gain.piece;
+  }
+  // Sizes of the pieces; two legs may hang together through the hip alone, which bends.
+  for (std::size_t i = 0; i < s.model.size(); ++i) s.gap_nearest[i] = 0;
+  for (std::size_t i = 0; i < s.model.size(); ++i)
+    if (s.islands.piece()[i] != 0) ++s.gap_nearest[s.islands.piece()[i] - 1];
+  for (std::size_t i = 0; i < s.model.size(); ++i) {
+    const std::uint32_t piece = s.islands.piece()[i];
+    s.proposal[i] = piece != 0 && 4 * s.gap_nearest[piece - 1] >= least ? 1 : 0;
   }
   return true;
 }
@@ -336,11 +345,10 @@ void build_chain(RegistrationState& s, const RigidTransform& first, InstanceBuff
   // The same again on the outliers.
   while (regions < s.settings.max_regions &&
          static_cast<double>(explained) < s.settings.wanted_share * static_cast<double>(n)) {
-    std::uint32_t piece = 0;
-    if (!find_region(s, poses[0], noise, poses[regions], piece)) break;
+    if (!find_region(s, poses[0], noise, poses[regions])) break;
     const auto label = static_cast<std::int8_t>(regions);
     for (std::size_t i = 0; i < n; ++i)
-      if (s.open[i] != 0 && s.islands.piece()[i] == piece) {
+      if (s.open[i] != 0 && s.proposal[i] != 0) {
         buffers.labels[i] = label;
         s.open[i] = 0;
         ++explained;
