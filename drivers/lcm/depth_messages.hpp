@@ -28,7 +28,7 @@ class DepthMessages {
   [[nodiscard]] std::size_t max_bytes() const noexcept { return buffer_.size(); }
 
  private:
-  static constexpr std::size_t kHeaderBytes = 8 + 2U * 8U + 2U * 2U + 2U * 4U + 5U * 8U + 3U * 4U;
+  static constexpr std::size_t kHeaderBytes = 88;  // fingerprint and fields before the readings
   /// Rows of one message.
   static constexpr int rows_per_part(int width) noexcept {
     return static_cast<int>((kMaxDepthMessageBytes - kHeaderBytes) /

@@ -48,12 +48,12 @@ class TrackMessages {
   }
 
  private:
-  static constexpr std::size_t kPoseBytes = 8 + 8 + 7U * 8U;
-  static constexpr std::size_t kRegionBytes = 2 + 4 + 2U * 4U + 7U * 8U;
-  static constexpr std::size_t kRegionsHeaderBytes =
-      8 + 3U * 8U + 1 + 4 + 2U * 2U + 4 + limits::kMaxRegions * kRegionBytes + 3U * 4U;
-  static constexpr std::size_t kDeformedHeaderBytes = 8 + 3U * 8U + 2U * 2U + 2U * 4U;
-  static constexpr std::size_t kDeformedPointBytes = 2 + 6U * 4U;
+  // Sizes on the wire: the fingerprint and the fields of types/*.lcm.
+  static constexpr std::size_t kPoseBytes = 72;
+  static constexpr std::size_t kRegionBytes = 70;
+  static constexpr std::size_t kRegionsHeaderBytes = 57 + limits::kMaxRegions * kRegionBytes;
+  static constexpr std::size_t kDeformedHeaderBytes = 44;
+  static constexpr std::size_t kDeformedPointBytes = 26;
   static_assert(kRegionsHeaderBytes + kLabelsPerPart <= kMaxMessageBytes);
   static_assert(kDeformedHeaderBytes + kDeformedPerPart * kDeformedPointBytes <= kMaxMessageBytes);
   static_assert(limits::kMaxModelPoints <= 32768, "indices are int16");

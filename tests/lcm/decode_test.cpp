@@ -173,9 +173,10 @@ TEST(LcmDecoding, RefusesCountsAndNumbersOutOfRange) {
   EXPECT_FALSE(decodes(MessageKind::deformed, with<std::int16_t>(deformed, kIndices, -1)));
   EXPECT_FALSE(decodes(MessageKind::deformed, with<std::int16_t>(deformed, kIndices, 100)))
       << "not ascending";
-  EXPECT_FALSE(decodes(MessageKind::deformed, with<std::int16_t>(deformed, kIndices + 57 * 2, 16384)));
-  EXPECT_FALSE(decodes(MessageKind::deformed,
-                       with(deformed, kIndices + 58 * 2, std::numeric_limits<float>::infinity())));
+  EXPECT_FALSE(
+      decodes(MessageKind::deformed, with<std::int16_t>(deformed, kIndices + std::size_t{57} * 2, 16384)));
+  EXPECT_FALSE(decodes(MessageKind::deformed, with(deformed, kIndices + std::size_t{58} * 2,
+                                                   std::numeric_limits<float>::infinity())));
 
   const auto& status = samples.bodies[3];
   EXPECT_FALSE(decodes(MessageKind::status, with<std::int32_t>(status, 16, 0)))

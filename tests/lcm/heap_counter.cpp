@@ -14,6 +14,7 @@ thread_local std::int64_t calls = 0;
 
 #if PLIANT_COUNTS_HEAP
 // glibc lets a program replace these for itself and every library it loads.
+// NOLINTBEGIN(bugprone-reserved-identifier): glibc's own names
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -32,6 +33,7 @@ void* realloc(void* block, std::size_t size) noexcept {
   return __libc_realloc(block, size);
 }
 }
+// NOLINTEND(bugprone-reserved-identifier)
 #endif
 
 namespace pliant {
