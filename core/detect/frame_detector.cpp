@@ -86,6 +86,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
 void FrameDetector::begin(const Surface& surface) noexcept {
   snapshot_.take(surface);
   hinted_ = false;
+  hint_ = RigidTransform();
   phase_ = Phase::normals;
   cursor_ = 0;
   round_ = 0;
@@ -98,7 +99,7 @@ void FrameDetector::begin(const Surface& surface, const RigidTransform& pose, do
   begin(surface);
   hinted_ = true;
   hint_ = pose;
-  hint_radius_ = radius;
+  hint_radius_ = radius + model_.radius();
 }
 
 DetectState FrameDetector::step(std::int64_t budget) noexcept {
@@ -179,8 +180,17 @@ std::int64_t FrameDetector::slice_sample() noexcept {
     return a != 1;
   };
   while (stride > 1 && divides(stride)) --stride;
-  for (std::size_t k = 0, at = 0; k < point_count_; ++k, at = (at + stride) % point_count_)
-    order_[k] = static_cast<std::uint32_t>(at);
+  // With a hint, those near it come first.
+  const Vector3 centre = hint_ * model_.centre();
+  std::size_t placed = 0;
+  for (int near = hinted_ ? 1 : 0; near >= 0; --near)
+    for (std::size_t k = 0, at = 0; k < point_count_; ++k, at = (at + stride) % point_count_) {
+      if (hinted_) {
+        const Vector3 apart = to_vector(points_[at]) - centre;
+        if ((apart.dot(apart) <= hint_radius_ * hint_radius_) != (near == 1)) continue;
+      }
+      order_[placed++] = static_cast<std::uint32_t>(at);
+    }
   begin_round();
   return static_cast<std::int64_t>(count) / 4 + 1;
 }
@@ -253,6 +263,7 @@ std::int64_t FrameDetector::slice_propose() noexcept {
                       });
     phase_ = Phase::shortlist;
     cursor_ = 0;
+    if (hinted_ && round_ == 0) try_pose(hint_);
   }
   return static_cast<std::int64_t>(kBatch) * 5;
 }
@@ -289,13 +300,17 @@ void FrameDetector::keep(const Candidate& candidate) noexcept {
   if (candidate.score > finalists_[worst].score) finalists_[worst] = candidate;
 }
 
+void FrameDetector::try_pose(const RigidTransform& pose) noexcept {
+  Candidate candidate;
+  candidate.pose = pose;
+  refine_pose(model_, snapshot_, kCloseLookPoints, coarse_, fine_, 4, candidate.pose);
+  judge(candidate, kCloseLookPoints);
+  keep(candidate);
+}
+
 std::int64_t FrameDetector::slice_shortlist() noexcept {
   if (cursor_ < shortlist_count_) {
-    Candidate candidate;
-    candidate.pose = pose_of(proposals_[cursor_++]);
-    refine_pose(model_, snapshot_, kCloseLookPoints, coarse_, fine_, 4, candidate.pose);
-    judge(candidate, kCloseLookPoints);
-    keep(candidate);
+    try_pose(pose_of(proposals_[cursor_++]));
   }
   if (cursor_ >= shortlist_count_) {
     phase_ = Phase::settle;

@@ -68,21 +68,24 @@ class FrameDetector {
   /// units).
   DetectState step(std::int64_t budget) noexcept;
   [[nodiscard]] DetectState state() const noexcept { return state_; }
-  [[nodiscard]] std::size_t finalist_count() const noexcept { return finalist_count_; }
+  /// A pose that was looked at closely.
   struct Candidate {
     RigidTransform pose;
     double score = -10;
     PoseEvidence evidence;
     double seamless = 0;
   };
-  [[nodiscard]] const Candidate& finalist(std::size_t k) const noexcept { return finalists_[k]; }
+  /// The distinct poses of the search so far, in no order: for several instances in one picture.
+  [[nodiscard]] std::span<const Candidate> candidates() const noexcept {
+    return {finalists_.data(), finalist_count_};
+  }
   /// The best pose so far; to be believed only in state found.
   [[nodiscard]] const Detection& best() const noexcept { return best_; }
 
  private:
   enum class Phase : std::uint8_t { normals, sample, describe, match, propose, shortlist, settle };
   struct Proposal {
-    std::uint16_t scene = 0;  // keypoint, or kFromHint
+    std::uint16_t scene = 0;  // keypoint
     std::uint16_t model = 0;
     float score = 0;
   };
@@ -99,6 +102,7 @@ class FrameDetector {
   std::int64_t slice_shortlist() noexcept;
   std::int64_t slice_settle() noexcept;
   [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
+  void try_pose(const RigidTransform& pose) noexcept;
   void judge(Candidate& candidate, std::size_t count) const noexcept;
   void keep(const Candidate& candidate) noexcept;
   void decide() noexcept;
