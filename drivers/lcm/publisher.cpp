@@ -3,6 +3,7 @@
 #include <lcm/lcm.h>
 #include <poll.h>
 #include <pthread.h>
+#include <sched.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -160,6 +161,11 @@ SendCounters LcmPublisher::counters() const noexcept {
 
 void LcmPublisher::run() noexcept {
   pthread_setname_np(pthread_self(), "pliant-lcm");
+  // A batch thread does not push aside who wakes it: on a busy machine the tracker ends its frame first.
+  if (::sched_getscheduler(0) == SCHED_OTHER) {
+    const sched_param none{};
+    ::sched_setscheduler(0, SCHED_BATCH, &none);
+  }
   if (observer_.thread_started != nullptr) observer_.thread_started(observer_.context);
   auto next_try = std::chrono::steady_clock::now();
   for (;;) {
