@@ -439,6 +439,8 @@ void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResul
   // that ask for one, the nearest gets it, and the others ask again.
   for (std::size_t j = 0; j < s.base_count; ++j) s.claimed[j] = 0;
   for (std::size_t i = 0; i < n; ++i) s.gap_nearest[i] = PointGrid::kNone;
+  const Point3f eye = {static_cast<float>(s.eye.x()), static_cast<float>(s.eye.y()),
+                       static_cast<float>(s.eye.z())};
   const auto working_reach_f = static_cast<float>(2 * working_reach(s));
   for (int pass = 0; pass < 6; ++pass) {
     bool asked = false;
@@ -447,6 +449,9 @@ void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResul
       const std::size_t region = s.proposal[i] == limits::kMaxRegions ? 0 : s.proposal[i];
       const Point3f normal = FastTransform(buffers.regions[region].transform).direction(s.model.normals()[i]);
       const Point3f& p = buffers.positions[i];
+      // What is turned away from the only eye cannot be seen.
+      if (s.one_view && normal.x * (eye.x - p.x) + normal.y * (eye.y - p.y) + normal.z * (eye.z - p.z) <= 0)
+        continue;
       float square = 0;
       const std::uint32_t j = s.base_grid.nearest_if(p, radius, square, [&](std::uint32_t k) {
         if (s.base_taken[k] != 0) return false;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "core/registration/cloud_chain.hpp"
+#include "core/registration/depth_search.hpp"
 #include "core/registration/registration_state.hpp"
 #include "core/registration/scene_features.hpp"
 
@@ -78,6 +80,9 @@ void lay_out(Workspace& workspace, const ModelView& model, std::size_t scene_poi
   s.gap_nearest = workspace.take<std::uint32_t>(m);
   s.proposal = workspace.take<std::uint32_t>(m);
   s.claimed = workspace.take<std::uint32_t>(n);
+  s.picture = workspace.take<std::uint16_t>(n);
+  s.picture_points = workspace.take<Point3f>(n);
+  s.depth_block = workspace.take<std::byte>(depth_search_bytes(model, n));
   for (std::uint32_t k = 0; k < s.settings.max_instances; ++k) {
     InstanceBuffers& b = s.buffers[k];
     const std::span<std::byte> regions =
@@ -181,33 +186,63 @@ const char* CloudRegistration::start(const ModelView& model, std::size_t scene_p
   return nullptr;
 }
 
-const RegistrationResult& CloudRegistration::register_cloud(std::span<const Point3f> scene) noexcept {
-  RegistrationState& s = *state_;
-  const auto done = [&](RegistrationStage stage, bool model_side = false) {
-    if (observer_.stage_done != nullptr) observer_.stage_done(observer_.context, stage, model_side);
-  };
-  s.result = RegistrationResult();
-  s.result.outcome = examine(s, scene);
-  if (s.result.outcome != RegistrationOutcome::found) return s.result;
-  s.result.outcome = RegistrationOutcome::not_found;
+void CloudRegistration::done(RegistrationStage stage, bool model_side) const noexcept {
+  if (observer_.stage_done != nullptr) observer_.stage_done(observer_.context, stage, model_side);
+}
 
-  // Model initialisation (3.1): stored in the model unless more keypoints are asked for.
-  describe_model(s);
-  done(RegistrationStage::descriptors, true);
-  // Scene: normals, uniform downsampling, descriptors.
+std::size_t CloudRegistration::prepare(std::span<const Point3f> scene) noexcept {
+  RegistrationState& s = *state_;
+  s.result = RegistrationResult();
+  s.key_count = 0;
+  s.result.outcome = examine(s, scene);
+  if (s.result.outcome != RegistrationOutcome::found) return 0;
   thin_scene(s, scene);
   if (scene_is_flat(s)) {
     s.result.outcome = RegistrationOutcome::flat;
-    return s.result;
+    return 0;
   }
   find_normals(s);
+  for (std::size_t i = 0; i < s.base_count; ++i) s.base_taken[i] = 0;
+  for (std::size_t i = 0; i < s.working_count; ++i) s.working_taken[i] = 0;
+  s.result.outcome = RegistrationOutcome::not_found;
+  return s.base_count;
+}
+
+void CloudRegistration::complete(std::size_t number, const RigidTransform& pose, double score) noexcept {
+  RegistrationState& s = *state_;
+  InstanceResult& instance = s.instances[number];
+  instance = InstanceResult();
+  instance.score = score;
+  build_chain(s, pose, s.buffers[number], instance);
+  done(RegistrationStage::chain);
+  find_deformed(s, s.buffers[number], instance);
+  done(RegistrationStage::deformed);
+}
+
+const RegistrationResult& CloudRegistration::finish(std::size_t found) noexcept {
+  RegistrationState& s = *state_;
+  s.result.model_keypoints = static_cast<std::uint32_t>(s.model_key_count);
+  s.result.scene_keypoints = static_cast<std::uint32_t>(s.key_count);
+  s.result.instances = {s.instances.data(), found};
+  if (found > 0) s.result.outcome = RegistrationOutcome::found;
+  return s.result;
+}
+
+const RegistrationResult& CloudRegistration::register_cloud(std::span<const Point3f> scene) noexcept {
+  RegistrationState& s = *state_;
+  // Model initialisation (3.1): stored in the model unless more keypoints are asked for.
+  describe_model(s);
+  done(RegistrationStage::descriptors, true);
+  // Scene: normals, uniform downsampling, descriptors, matches.
+  s.one_view = s.settings.has_viewpoint;
+  s.eye = s.settings.viewpoint;
+  if (prepare(scene) == 0) return s.result;
   done(RegistrationStage::normals);
+  std::size_t found = search_one_view(scene);
   std::uint32_t wanted = s.settings.scene_keypoints;
-  std::array<InstanceResult, kMostInstances>& instances = s.instances;
-  std::size_t found = 0;
   for (std::uint32_t step = 0; step <= s.settings.sampling_steps && found == 0; ++step) {
     const std::size_t before = s.key_count;
-    sample_keypoints(s, wanted, step == 0);
+    sample_keypoints(s, wanted);
     done(RegistrationStage::keypoints);
     if (step > 0 && s.key_count <= before) break;  // the scene has no more points
     describe_keypoints(s);
@@ -215,34 +250,69 @@ const RegistrationResult& CloudRegistration::register_cloud(std::span<const Poin
     match_keypoints(s);
     done(RegistrationStage::matching);
     // Grouping (3.2): one instance after the other, each from the matches that the earlier ones leave.
-    for (std::size_t i = 0; i < s.base_count; ++i) s.base_taken[i] = 0;
-    for (std::size_t i = 0; i < s.working_count; ++i) s.working_taken[i] = 0;
     while (found < s.settings.max_instances) {
       RigidTransform pose;
       const double score = find_instance(s, pose);
       done(RegistrationStage::grouping);
       if (score < kConvincingShare) break;
-      InstanceResult& instance = instances[found];
-      instance = InstanceResult();
-      instance.score = score;
-      build_chain(s, pose, s.buffers[found], instance);
-      done(RegistrationStage::chain);
-      find_deformed(s, s.buffers[found], instance);
-      done(RegistrationStage::deformed);
-      ++found;
+      complete(found++, pose, score);
     }
     wanted = static_cast<std::uint32_t>(std::min(1.5625 * wanted, 65535.0));
   }
-  s.result.model_keypoints = static_cast<std::uint32_t>(s.model_key_count);
-  s.result.scene_keypoints = static_cast<std::uint32_t>(s.key_count);
-  s.result.instances = {instances.data(), found};
-  if (found > 0) s.result.outcome = RegistrationOutcome::found;
-  return s.result;
+  return finish(found);
 }
 
-const RegistrationResult& CloudRegistration::register_depth(const DepthFrame&, const Intrinsics&,
-                                                            const SensorDescription&) noexcept {
-  return state_->result;
+std::size_t CloudRegistration::search_one_view(std::span<const Point3f> scene) noexcept {
+  RegistrationState& s = *state_;
+  if (!s.settings.has_viewpoint || !s.settings.free_space) return 0;
+  DepthFrame frame;
+  Intrinsics camera;
+  RigidTransform scene_from_camera;
+  if (!draw_cloud(s, scene, frame, camera, scene_from_camera)) return 0;
+  SensorDescription sensor;
+  sensor.near_limit = 0.05;
+  sensor.far_limit = limits::kMaxDepth;
+  std::array<SeenInstance, kMostInstances> seen;
+  const std::size_t count = search_picture(s, frame, camera, sensor, {seen.data(), s.settings.max_instances});
+  done(RegistrationStage::grouping);
+  for (std::size_t k = 0; k < count; ++k) complete(k, scene_from_camera * seen[k].pose, seen[k].score);
+  return count;
+}
+
+const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& frame, const Intrinsics& camera,
+                                                            const SensorDescription& sensor) noexcept {
+  RegistrationState& s = *state_;
+  const std::size_t pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+  if (pixels > s.picture_points.size() || frame.width != camera.width || frame.height != camera.height) {
+    s.result = RegistrationResult();
+    s.result.outcome = RegistrationOutcome::too_many_points;
+    return s.result;
+  }
+  describe_model(s);
+  done(RegistrationStage::descriptors, true);
+  std::array<SeenInstance, kMostInstances> seen;
+  const std::size_t count = search_picture(s, frame, camera, sensor, {seen.data(), s.settings.max_instances});
+  done(RegistrationStage::grouping);
+  // The picture's readings as a cloud, for the chain and the deformed points.
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  const double scale = 1.0 / camera.depth_scale;
+  for (int v = 0; v < frame.height; ++v)
+    for (int u = 0; u < frame.width; ++u) {
+      const std::size_t at = static_cast<std::size_t>(v * frame.width + u);
+      const double z = frame.depth[v * frame.stride + u] * scale;
+      if (z < sensor.near_limit || z > sensor.far_limit) {
+        s.picture_points[at] = {kNone, kNone, kNone};
+        continue;
+      }
+      s.picture_points[at] = {static_cast<float>((u - camera.cx) / camera.fx * z),
+                              static_cast<float>((v - camera.cy) / camera.fy * z), static_cast<float>(z)};
+    }
+  s.one_view = true;
+  s.eye = Vector3::Zero();
+  if (prepare(s.picture_points.first(pixels)) == 0) return s.result;
+  done(RegistrationStage::normals);
+  for (std::size_t k = 0; k < count; ++k) complete(k, seen[k].pose, seen[k].score);
+  return finish(count);
 }
 
 }  // namespace pliant

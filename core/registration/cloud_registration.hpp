@@ -126,6 +126,15 @@ class CloudRegistration {
                                                          const SensorDescription& sensor) noexcept;
 
  private:
+  void done(RegistrationStage stage, bool model_side = false) const noexcept;
+  /// Thins the scene and finds its normals; 0 when it is of no use (the outcome says why).
+  [[nodiscard]] std::size_t prepare(std::span<const Point3f> scene) noexcept;
+  /// Chain and deformed points of one instance from its base's pose (scene <- model).
+  void complete(std::size_t number, const RigidTransform& pose, double score) noexcept;
+  [[nodiscard]] const RegistrationResult& finish(std::size_t found) noexcept;
+  /// Instances in a cloud that was seen from one place, by free space.
+  [[nodiscard]] std::size_t search_one_view(std::span<const Point3f> scene) noexcept;
+
   RegistrationState* state_ = nullptr;  // inside the block
   RegistrationObserver observer_;
 };

@@ -30,7 +30,9 @@ struct InstanceBuffers {
 struct RegistrationState {
   RegistrationSettings settings;
   ModelView model;
-  double support = 0;  ///< of the descriptors, metres
+  double support = 0;     ///< of the descriptors, metres
+  bool one_view = false;  ///< all of the scene was seen from `eye`
+  Vector3 eye = Vector3::Zero();
   double spacing = 0;  ///< the coarser of the model's and the scene's, metres
 
   // The scene, thinned of duplicates: `base`; a coarser one with normals that carries the descriptors:
@@ -70,6 +72,10 @@ struct RegistrationState {
   Grouping grouping;
   IslandFilter islands;
   SurfaceReadings readings;
+
+  std::span<std::byte> depth_block;   ///< for the search in a picture
+  std::span<std::uint16_t> picture;   ///< a cloud drawn as its viewpoint sees it
+  std::span<Point3f> picture_points;  ///< vertices of a depth picture, NaN where it has no reading
 
   // One entry a model point.
   std::span<std::uint16_t> prefix;  ///< 0, 1, 2, …

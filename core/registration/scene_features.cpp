@@ -87,8 +87,8 @@ void find_normals(RegistrationState& s) noexcept {
   // Four spacings hold some forty points, enough to average the noise of a whole spacing out.
   estimate_normals(s.base_grid, points, std::max(0.15 * s.support, 4 * s.spacing), normals);
   static_cast<void>(s.working_grid.build(points, grid_cell_for_support(s.support)));
-  if (s.settings.has_viewpoint || !s.settings.consistent_normals) {
-    const Vector3& v = s.settings.viewpoint;
+  if (s.one_view || !s.settings.consistent_normals) {
+    const Vector3& v = s.eye;
     NormalOrientation::towards(
         points, {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())}, normals);
   } else {
@@ -96,14 +96,13 @@ void find_normals(RegistrationState& s) noexcept {
   }
 }
 
-void sample_keypoints(RegistrationState& s, std::uint32_t wanted, bool first) noexcept {
+void sample_keypoints(RegistrationState& s, std::uint32_t wanted) noexcept {
   // Points grow with the square of 1/leaf; a few steps reach the wanted number within some per cent.
   const std::span<const Point3f> points = s.base.first(s.base_count);
   const std::size_t target = std::min<std::size_t>({wanted, s.keys.size(), s.base_count});
   double leaf = s.spacing * std::sqrt(static_cast<double>(s.base_count) /
                                       static_cast<double>(std::max<std::size_t>(1, target)));
   std::size_t count = 0;
-  static_cast<void>(first);
   for (int step = 0; step < 6; ++step) {
     count = s.sampling.sample(points, leaf, s.kept);
     const double ratio = static_cast<double>(count) / static_cast<double>(target);

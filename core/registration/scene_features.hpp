@@ -17,9 +17,8 @@ void thin_scene(RegistrationState& s, std::span<const Point3f> scene) noexcept;
 [[nodiscard]] bool scene_is_flat(const RegistrationState& s) noexcept;
 /// Normals of the working cloud, all away from the matter.
 void find_normals(RegistrationState& s) noexcept;
-/// About `wanted` keypoints by uniform sampling; the sampling factor is found by bisection at `first`, and
-/// follows by −20 % in later steps.
-void sample_keypoints(RegistrationState& s, std::uint32_t wanted, bool first) noexcept;
+/// About `wanted` keypoints by uniform sampling.
+void sample_keypoints(RegistrationState& s, std::uint32_t wanted) noexcept;
 void describe_keypoints(RegistrationState& s) noexcept;
 /// The best model keypoint of every scene keypoint.
 void match_keypoints(RegistrationState& s) noexcept;
