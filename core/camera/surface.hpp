@@ -1,5 +1,5 @@
 // The observed surface in a window of the depth frame: cleaned and smoothed depth, vertices and normals on
-// demand.
+// demand. All in integers.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include "core/camera/depth_frame.hpp"
 #include "core/camera/intrinsics.hpp"
 #include "core/camera/sensor.hpp"
+#include "core/camera/surface_rows.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/model/model_view.hpp"
 
@@ -31,14 +32,21 @@ inline constexpr int kUnitsPerMillimetre = 16;         ///< of points
 inline constexpr double kUnitsPerMetre = 16000.0;      ///< of points
 inline constexpr double kDepthUnitsPerMetre = 8000.0;  ///< of depth pictures
 
-/// Owns two depth pictures of the camera's size, 16 bits a pixel at 1/8 mm, 0 = no reading. Only the window
-/// of the last build() holds data; everything outside it reads as "no reading".
+/// A length as pixels times depth: what spans it at depth z8 is span / z8 pixels.
+struct PixelSpan {
+  std::int32_t span = 0;  ///< pixels · 1/8 mm
+};
+
+/// Owns a depth picture of the camera's size, 16 bits a pixel at 1/8 mm, 0 = no reading. Only the window of
+/// the last build() holds data; everything outside it reads as "no reading". What a pixel of the window holds
+/// does not depend on the window.
 class Surface {
  public:
   /// Takes what a camera of this size needs.
   void lay_out(Workspace& workspace, const Intrinsics& camera) noexcept;
   /// Fills the tables; after lay_out() on a real workspace.
-  void start(const Intrinsics& camera, const SensorDescription& sensor) noexcept;
+  void start(const Intrinsics& camera, const SensorDescription& sensor,
+             Kernels kernels = Kernels::automatic) noexcept;
 
   /// Cleans and smooths `window` of `frame` (clipped to the picture):
   /// readings outside the sensor's range go; a reading with fewer than kMinSupport of its eight neighbours at
@@ -46,16 +54,15 @@ class Surface {
   /// that lie within the discontinuity limit.
   void build(const DepthFrame& frame, Window window) noexcept;
 
-  static constexpr int kMinSupport = 3;
-
   [[nodiscard]] const Window& window() const noexcept { return window_; }
-  /// Smoothed depth at a pixel of the window, 1/8 mm, 0 = none. No bounds check.
-  [[nodiscard]] std::uint16_t depth_at(int u, int v) const noexcept {
-    return smooth_[static_cast<std::size_t>(v * width_ + u)];
-  }
-  /// As depth_at(), 0 outside the window.
+  /// Smoothed depth at a pixel of the picture, 1/8 mm, 0 = none. No bounds check.
+  [[nodiscard]] std::uint16_t depth_at(int u, int v) const noexcept { return *at(u, v); }
+  /// As depth_at(), 0 outside the picture.
   [[nodiscard]] std::uint16_t depth(int u, int v) const noexcept {
-    return window_.contains(u, v) ? depth_at(u, v) : 0;
+    return static_cast<unsigned>(u) < static_cast<unsigned>(width_) &&
+                   static_cast<unsigned>(v) < static_cast<unsigned>(height_)
+               ? depth_at(u, v)
+               : std::uint16_t{0};
   }
   /// The vertex of a pixel with depth `z8` (1/8 mm); exact to half a unit plus 2^-15 of the depth.
   [[nodiscard]] IntPoint vertex(int u, int v, std::uint16_t z8) const noexcept {
@@ -63,19 +70,27 @@ class Surface {
     return {(z * ray_x_[static_cast<std::size_t>(u)] + (1 << 12)) >> 13,
             (z * ray_y_[static_cast<std::size_t>(v)] + (1 << 12)) >> 13, z * 2};
   }
-  /// Unit normal towards the camera from depth differences `step` pixels to each side (one-sided where the
-  /// other side is missing or across a discontinuity). False when there is none.
+  /// Unit normal towards the camera from depth differences `step` pixels (1 … kMostStep) to each side
+  /// (one-sided where the other side is missing or across a discontinuity). False when there is none. The
+  /// pixel lies in the picture.
   [[nodiscard]] bool normal(int u, int v, int step, Normal16& out) const noexcept;
-  /// Does the surface at the pixel face along `direction` (unit, Q14) within 60°? Without a normal there: true.
+  /// Does the surface at the pixel face along `direction` (unit, Q14) within 60°? Without a normal there:
+  /// true.
   [[nodiscard]] bool faces(int u, int v, int step, const IntPoint& direction) const noexcept;
-  /// The step for normal() that spans about `metres` at depth z8.
-  [[nodiscard]] int normal_step(std::uint16_t z8, double metres) const noexcept;
-
-  /// Largest depth difference between neighbouring pixels of one surface, 1/8 mm:
-  /// 4 σ of the sensor plus a slope of 75° over one pixel.
-  [[nodiscard]] std::uint16_t discontinuity(std::uint16_t z8) const noexcept {
-    return discontinuity_[static_cast<std::size_t>(z8 >> kDepthTableShift)];
+  /// The step for normal() that spans about that length at depth z8.
+  [[nodiscard]] static int normal_step(std::uint16_t z8, PixelSpan length) noexcept {
+    if (z8 == 0) return 1;
+    const std::int32_t step = (length.span + z8 / 2) / z8;
+    return step < 1 ? 1 : step > kMostStep ? kMostStep : step;
   }
+  [[nodiscard]] PixelSpan pixel_span(double metres) const noexcept;
+  [[nodiscard]] int normal_step(std::uint16_t z8, double metres) const noexcept {
+    return normal_step(z8, pixel_span(metres));
+  }
+  static constexpr int kMostStep = 8;
+
+  /// Largest depth difference between neighbouring pixels of one surface, 1/8 mm.
+  [[nodiscard]] std::uint16_t discontinuity(std::uint16_t z8) const noexcept { return rule_.limit(z8); }
   /// σ of a reading, 1/16 mm, at least 1.
   [[nodiscard]] std::int32_t sigma(std::int32_t z16) const noexcept {
     const std::int32_t i = z16 >> (kDepthTableShift + 1);
@@ -88,24 +103,29 @@ class Surface {
  private:
   static constexpr int kDepthTableShift = 8;  // a table entry spans 32 mm
   static constexpr int kDepthTableSize = 256;
+  static constexpr std::size_t kMargin = 16;  // no readings around the picture: normals look without a check
+  static constexpr std::size_t kRing = 3;     // rows of the stages before the last
+  static_assert(kMargin >= kRowSlack && kMargin >= kMostStep);
 
-  /// Normal of any length, largest component below 2^14. False when there is none.
+  /// Normal of any length, components below 2^14. False when there is none.
   [[nodiscard]] bool raw_normal(int u, int v, int step, IntPoint& out) const noexcept;
-  void convert_row(const std::uint16_t* raw, int v) noexcept;
-  void clean_row(int v) noexcept;
-  void smooth_row(int v) noexcept;
+  [[nodiscard]] const std::uint16_t* at(int u, int v) const noexcept {
+    return picture_ + static_cast<std::ptrdiff_t>(v) * static_cast<std::ptrdiff_t>(stride_) + u;
+  }
 
   Intrinsics camera_;
   int width_ = 0, height_ = 0;
+  std::size_t stride_ = 0;  // pixels from one row of the picture to the next
   Window window_;
-  std::uint32_t scale_ = 0;           // depth units per raw unit, Q16
-  std::uint32_t near_ = 0, far_ = 0;  // 1/8 mm
-  std::span<std::uint16_t>
-      converted_;  // three border-padded stages share two pictures: converted, then smooth
-  std::span<std::uint16_t> cleaned_;
-  std::span<std::uint16_t> smooth_;
-  std::span<std::int16_t> ray_x_, ray_y_;  // (u - cx) / fx, (v - cy) / fy in Q14
-  std::span<std::uint16_t> discontinuity_;
+  SurfaceRows rows_;
+  DepthScale scale_;
+  DiscontinuityRule rule_;
+  std::int32_t focal_x_ = 0, focal_y_ = 0;  // Q8
+  std::span<std::uint16_t> smooth_;         // the picture and its margins
+  std::uint16_t* picture_ = nullptr;        // pixel (0, 0) in it
+  std::span<std::uint16_t> converted_;      // kRing rows, then one of zeros
+  std::span<std::uint16_t> cleaned_;        // kRing rows
+  std::span<std::int16_t> ray_x_, ray_y_;   // (u - cx) / fx, (v - cy) / fy in Q14
   std::span<std::int32_t> sigma_;
 };
 
