@@ -2,34 +2,29 @@
 
 #include <algorithm>
 
-#if defined(__aarch64__) || defined(__arm__)
-#include <sys/auxv.h>
-#endif
+#include "core/simd/cpu.hpp"
 
 namespace pliant {
 
 DotKernel dot_kernel(Kernels kernels) noexcept {
+  switch (simd_body(kernels)) {
 #if defined(__x86_64__) || defined(__i386__)
-  const bool automatic = kernels == Kernels::automatic;
-  __builtin_cpu_init();
-  if (automatic && __builtin_cpu_supports("avx512vnni") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl"))
-    return &dot_products_avx512vnni;
-  if ((automatic || kernels == Kernels::avx2) && __builtin_cpu_supports("avx2")) return &dot_products_avx2;
-  if ((automatic || kernels == Kernels::sse) && __builtin_cpu_supports("sse4.1")) return &dot_products_sse41;
+    case SimdBody::avx2:
+      return kernels == Kernels::automatic && cpu_features().avx512vnni ? &dot_products_avx512vnni
+                                                                        : &dot_products_avx2;
+    case SimdBody::sse41:
+      return &dot_products_sse41;
 #elif defined(__aarch64__)
-  constexpr unsigned long kDotProducts = 1UL << 20;  // HWCAP_ASIMDDP
-  if (kernels == Kernels::automatic && (getauxval(AT_HWCAP) & kDotProducts) != 0)
-    return &dot_products_dotprod;
-  if (kernels == Kernels::automatic || kernels == Kernels::neon) return &dot_products_neon;
+    case SimdBody::neon:
+      return kernels == Kernels::automatic && cpu_features().dot_products ? &dot_products_dotprod
+                                                                          : &dot_products_neon;
 #elif defined(__arm__)
-  constexpr unsigned long kNeon = 1UL << 12;  // HWCAP_NEON
-  if ((kernels == Kernels::automatic || kernels == Kernels::neon) && (getauxval(AT_HWCAP) & kNeon) != 0)
-    return &dot_products_neon;
-#else
-  static_cast<void>(kernels);
+    case SimdBody::neon:
+      return &dot_products_neon;
 #endif
-  return &dot_products_scalar;
+    default:
+      return &dot_products_scalar;
+  }
 }
 
 void DescriptorMatcher::lay_out(Workspace& workspace, std::size_t candidates) noexcept {

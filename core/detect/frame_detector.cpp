@@ -20,7 +20,7 @@ constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise
 // earlier.
 constexpr double kCertain = 0.45;
 constexpr double kConvincing = 0.28;
-constexpr double kLastResort = 0.23;
+constexpr double kLastResort = 0.2;
 constexpr double kRivalShare = 0.4;
 
 Vector3 to_vector(const Point3f& p) noexcept {

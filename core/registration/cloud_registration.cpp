@@ -16,8 +16,11 @@ namespace {
 
 // An object seen from one side or among clutter stays between these; a wrong unit (mm for m) does not.
 constexpr double kLeastRatio = 0.1, kMostRatio = 60;
-// A lone pose must have this share of the model's points on the scene's surface, with its normals.
-constexpr double kConvincingShare = 0.25;
+// A pose must have this share of the model's points on the scene's surface, with its normals. Absent objects
+// reach 0.36; what is seen from one side only is judged by free space instead.
+constexpr double kConvincingShare = 0.42;
+// Of a cloud taken from one place, nearly all points are in sight from there.
+constexpr double kOneView = 0.95;
 
 /// Keypoints after every step of the sampling factor (−20 % each, so about 1.56 times as many).
 std::size_t key_capacity(std::size_t scene_points, const RegistrationSettings& settings) noexcept {
@@ -234,11 +237,19 @@ const RegistrationResult& CloudRegistration::register_cloud(std::span<const Poin
   describe_model(s);
   done(RegistrationStage::descriptors, true);
   // Scene: normals, uniform downsampling, descriptors, matches.
-  s.one_view = s.settings.has_viewpoint;
-  s.eye = s.settings.viewpoint;
+  DepthFrame frame;
+  Intrinsics camera;
+  RigidTransform scene_from_camera;
+  s.eye = s.settings.viewpoint;  // the origin unless given: clouds of one sensor stand in its own frame
+  const double in_sight = draw_cloud(s, scene, frame, camera, scene_from_camera);
+  s.one_view = s.settings.has_viewpoint || in_sight > kOneView;
   if (prepare(scene) == 0) return s.result;
   done(RegistrationStage::normals);
-  std::size_t found = search_one_view(scene);
+  std::size_t found = 0;
+  if (s.one_view && in_sight > 0 && s.settings.free_space) {
+    found = search_one_view(frame, camera, scene_from_camera);
+    if (in_sight > kOneView) return finish(found);
+  }
   std::uint32_t wanted = s.settings.scene_keypoints;
   for (std::uint32_t step = 0; step <= s.settings.sampling_steps && found == 0; ++step) {
     const std::size_t before = s.key_count;
@@ -262,13 +273,9 @@ const RegistrationResult& CloudRegistration::register_cloud(std::span<const Poin
   return finish(found);
 }
 
-std::size_t CloudRegistration::search_one_view(std::span<const Point3f> scene) noexcept {
+std::size_t CloudRegistration::search_one_view(const DepthFrame& frame, const Intrinsics& camera,
+                                               const RigidTransform& scene_from_camera) noexcept {
   RegistrationState& s = *state_;
-  if (!s.settings.has_viewpoint || !s.settings.free_space) return 0;
-  DepthFrame frame;
-  Intrinsics camera;
-  RigidTransform scene_from_camera;
-  if (!draw_cloud(s, scene, frame, camera, scene_from_camera)) return 0;
   SensorDescription sensor;
   sensor.near_limit = 0.05;
   sensor.far_limit = limits::kMaxDepth;

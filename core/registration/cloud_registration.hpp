@@ -27,8 +27,8 @@ struct RegistrationSettings {
   std::uint32_t max_instances = 1;   ///< instances of the model looked for [1, 32]
   double wanted_share =
       0.98;  ///< of the observed model points explained rigidly: the chain ends there [0.1, 1]
-  bool has_viewpoint =
-      false;  ///< normals are turned to `viewpoint`; without, they are made consistent by themselves
+  bool has_viewpoint = false;  ///< normals are turned to `viewpoint`; without, to the origin when all of the
+                               ///< scene is in sight from there, else they are made consistent by themselves
   Vector3 viewpoint = Vector3::Zero();  ///< where the sensor stood, scene frame, metres
   Kernels kernels = Kernels::automatic;
   // Parts that can be switched off to see what they are worth.
@@ -132,8 +132,9 @@ class CloudRegistration {
   /// Chain and deformed points of one instance from its base's pose (scene <- model).
   void complete(std::size_t number, const RigidTransform& pose, double score) noexcept;
   [[nodiscard]] const RegistrationResult& finish(std::size_t found) noexcept;
-  /// Instances in a cloud that was seen from one place, by free space.
-  [[nodiscard]] std::size_t search_one_view(std::span<const Point3f> scene) noexcept;
+  /// Instances in a cloud that was seen from one place and is drawn as a picture, by free space.
+  [[nodiscard]] std::size_t search_one_view(const DepthFrame& frame, const Intrinsics& camera,
+                                            const RigidTransform& scene_from_camera) noexcept;
 
   RegistrationState* state_ = nullptr;  // inside the block
   RegistrationObserver observer_;

@@ -25,8 +25,7 @@ Intrinsics usual_camera(std::size_t pixels) noexcept {
 void lay_out(Workspace& workspace, const RegistrationState& s, const Intrinsics& camera, Surface& surface,
              FrameDetector& detector) noexcept {
   DetectSettings settings;
-  settings.keypoints = std::clamp(s.settings.scene_keypoints, 1024U, 4096U);
-  settings.model_keypoints = std::clamp(s.settings.model_keypoints, 1024U, 2048U);
+  settings.rounds = 4;  // there is no next frame to try
   surface.lay_out(workspace, camera);
   detector.lay_out(workspace, s.model, camera, settings);
 }
@@ -37,8 +36,6 @@ std::size_t depth_search_bytes(const ModelView& model, std::size_t pixels) noexc
   // A picture of unusual proportions takes somewhat more than the usual one.
   RegistrationState s;
   s.model = model;
-  s.settings.scene_keypoints = 4096;
-  s.settings.model_keypoints = 2048;
   Workspace measure;
   Surface surface;
   FrameDetector detector;
@@ -80,10 +77,10 @@ std::size_t search_picture(RegistrationState& s, const DepthFrame& frame, const 
   return count;
 }
 
-bool draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame& frame, Intrinsics& camera,
-                RigidTransform& scene_from_camera) noexcept {
+double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame& frame, Intrinsics& camera,
+                  RigidTransform& scene_from_camera) noexcept {
   // The camera looks at the middle of the cloud.
-  const Vector3 eye = s.settings.viewpoint;
+  const Vector3 eye = s.eye;
   Vector3 middle = Vector3::Zero();
   std::size_t count = 0;
   for (const Point3f& p : scene) {
@@ -95,7 +92,7 @@ bool draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame
     ++count;
   }
   const double length = std::sqrt(middle.dot(middle));
-  if (count < 100 || length < 0.5 * static_cast<double>(count)) return false;
+  if (count < 100 || length < 0.5 * static_cast<double>(count)) return 0;
   const Vector3 z = middle / length;
   const Vector3 up = std::fabs(z.y()) < 0.9 ? Vector3(0, 1, 0) : Vector3(1, 0, 0);
   Vector3 x(up.y() * z.z() - up.z() * z.y(), up.z() * z.x() - up.x() * z.z(),
@@ -118,7 +115,7 @@ bool draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame
     wide = std::max(wide, std::fabs(q.x() / q.z()));
     high = std::max(high, std::fabs(q.y() / q.z()));
   }
-  if (!(wide > 1e-3 && wide < 3 && high > 1e-3 && high < 3)) return false;
+  if (!(wide > 1e-3 && wide < 3 && high > 1e-3 && high < 3)) return 0;
   const double pixels = std::min<double>(0.5 * static_cast<double>(count), 1920.0 * 1200.0);
   const double focal = std::sqrt(pixels / (4 * wide * high));
   camera.width =
@@ -126,7 +123,7 @@ bool draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame
   camera.height =
       std::clamp(static_cast<int>(2 * high * focal) + 1, limits::kMinFrameHeight, limits::kMaxFrameHeight);
   const std::size_t area = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  if (area > s.picture.size()) return false;
+  if (area > s.picture.size()) return 0;
   camera.fx = std::clamp(0.5 * (camera.width - 1) / wide, 10.0, 10000.0);
   camera.fy = std::clamp(0.5 * (camera.height - 1) / high, 10.0, 10000.0);
   camera.cx = 0.5 * (camera.width - 1);
@@ -148,7 +145,20 @@ bool draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame
   frame.depth = s.picture.data();
   frame.width = frame.stride = camera.width;
   frame.height = camera.height;
-  return true;
+  // In sight: as near as the nearest of its pixel, but for the slope of a surface across the pixel and noise.
+  std::size_t drawn = 0, seen = 0;
+  for (const Point3f& p : scene) {
+    const Vector3 q =
+        back * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    if (!(q.z() > 0.05 && q.z() < limits::kMaxDepth)) continue;
+    const int u = static_cast<int>(std::floor(camera.fx * q.x() / q.z() + camera.cx + 0.5));
+    const int v = static_cast<int>(std::floor(camera.fy * q.y() / q.z() + camera.cy + 0.5));
+    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
+    const double nearest = s.picture[static_cast<std::size_t>(v * camera.width + u)] / kDrawnUnitsPerMetre;
+    ++drawn;
+    seen += q.z() - nearest < 0.02 * q.z() ? 1U : 0U;
+  }
+  return drawn > 0 ? static_cast<double>(seen) / static_cast<double>(drawn) : 0;
 }
 
 }  // namespace pliant

@@ -26,9 +26,10 @@ struct SeenInstance {
                                          const Intrinsics& camera, const SensorDescription& sensor,
                                          std::span<SeenInstance> seen) noexcept;
 
-/// Draws a cloud as the settings' viewpoint sees it: pose and intrinsics of a camera that has all of it in
-/// view, one pixel for about every second point. False when the cloud surrounds the viewpoint.
-[[nodiscard]] bool draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame& frame,
-                              Intrinsics& camera, RigidTransform& scene_from_camera) noexcept;
+/// Draws a cloud as RegistrationState::eye sees it: pose and intrinsics of a camera that has all of it in
+/// view, one pixel for about every second point. Returns the share of the points that are in sight from there
+/// (not behind nearer ones); 0 when the cloud surrounds the eye or cannot be drawn.
+[[nodiscard]] double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFrame& frame,
+                                Intrinsics& camera, RigidTransform& scene_from_camera) noexcept;
 
 }  // namespace pliant
