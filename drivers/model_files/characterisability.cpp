@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "core/camera/sensor.hpp"
+#include "core/detect/symmetric_eigen.hpp"
 #include "drivers/model_files/describe_model.hpp"
 #include "drivers/model_files/nearest.hpp"
 
@@ -39,15 +39,53 @@ Vector3 smoothed_normal(const OrientedCloud& cloud, const NearestPoints& tree, s
   return unit_or_zero(sum);
 }
 
-/// Of the motions that are free (columns: turn, shift; orthonormal in moved distance) how many are mere
+struct Eigen6 {
+  Vector6 values;   // ascending
+  Matrix6 vectors;  // columns
+};
+
+/// Eigenvectors of a symmetric matrix by Jacobi's rotations.
+Eigen6 symmetric_eigen6(Matrix6 m) {
+  constexpr int kSweeps = 12;
+  Matrix6 vectors = Matrix6::Identity();
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int p = 0; p < 5; ++p)
+      for (int q = p + 1; q < 6; ++q) {
+        if (m(p, q) == 0) continue;
+        const double half = 0.5 * (m(q, q) - m(p, p)) / m(p, q);
+        const double t = (half < 0 ? -1 : 1) / (std::fabs(half) + std::sqrt(half * half + 1));
+        if (!std::isfinite(t)) continue;
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+        const auto turn = [c, s](double& a, double& b) {
+          const double before = a;
+          a = c * before - s * b;
+          b = s * before + c * b;
+        };
+        for (int k = 0; k < 6; ++k) turn(m(k, p), m(k, q));
+        for (int k = 0; k < 6; ++k) turn(m(p, k), m(q, k));
+        for (int k = 0; k < 6; ++k) turn(vectors(k, p), vectors(k, q));
+      }
+  std::array<int, 6> order = {0, 1, 2, 3, 4, 5};
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return m(a, a) != m(b, b) ? m(a, a) < m(b, b) : a < b; });
+  Eigen6 result;
+  for (int k = 0; k < 6; ++k) {
+    const int from = order[static_cast<std::size_t>(k)];
+    result.values(k) = m(from, from);
+    result.vectors.col(k) = vectors.col(from);
+  }
+  return result;
+}
+
+/// Of the `free` first motions (columns: turn, shift; orthonormal in moved distance) how many are mere
 /// shifts.
-std::size_t free_shifts(const Eigen::Matrix<double, 6, Eigen::Dynamic>& free, const Matrix6& moved) {
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> turns = free.topRows<3>();
-  const Eigen::MatrixXd by_turning = turns.transpose() * moved.topLeftCorner<3, 3>() * turns;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(by_turning);
+std::size_t free_shifts(const Matrix6& motions, int free) {
+  Matrix6 by_turning = Matrix6::Identity();
+  for (int a = 0; a < free; ++a)
+    for (int b = 0; b < free; ++b) by_turning(a, b) = motions.col(a).head<3>().dot(motions.col(b).head<3>());
+  const Vector6 shares = symmetric_eigen6(by_turning).values;
   std::size_t shifts = 0;
-  for (Eigen::Index i = 0; i < shares.eigenvalues().size(); ++i)
-    shifts += shares.eigenvalues()(i) < 0.5 ? 1U : 0U;
+  while (shifts < 6 && shares(static_cast<Eigen::Index>(shifts)) < 0.5) ++shifts;
   return shifts;
 }
 
@@ -74,29 +112,32 @@ Characterisability characterise(const OrientedCloud& cloud, double spacing) {
     square += (cloud.points[i] - centre).squaredNorm() / static_cast<double>(count);
   const double radius = std::sqrt(square);
 
-  Matrix6 along_normal = Matrix6::Zero(), moved = Matrix6::Zero();
+  // How far each motion moves the points along their normals, and by its turn at all (a shift moves all by
+  // one).
+  Matrix6 along_normal = Matrix6::Zero();
+  Matrix3 turned = 1e-9 * Matrix3::Identity();  // points on one line: that turn moves nothing
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3 p = (cloud.points[i] - centre) / radius;
     const Vector3 n = smoothed_normal(cloud, tree, i, kSmoothingSpacings * spacing);
     Vector6 row;
     row << cross(p, n), n;
     along_normal += row * row.transpose() / static_cast<double>(count);
-    moved.topLeftCorner<3, 3>() +=
-        (Matrix3::Identity() * p.squaredNorm() - p * p.transpose()) / static_cast<double>(count);
+    turned += (Matrix3::Identity() * p.squaredNorm() - p * p.transpose()) / static_cast<double>(count);
   }
-  moved.topLeftCorner<3, 3>() += 1e-9 * Matrix3::Identity();  // points on one line: that turn moves nothing
-  moved.bottomRightCorner<3, 3>().setIdentity();
-
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6> motions(along_normal, moved);
-  const Vector6 shares = motions.eigenvalues().cwiseMax(0.0).cwiseMin(1.0).cwiseSqrt();
+  // In units of the distance that the points move.
+  const SymmetricEigen turns = symmetric_eigen(turned);
+  Matrix6 unit = Matrix6::Identity();
+  unit.topLeftCorner<3, 3>() = turns.vectors * turns.values.cwiseSqrt().cwiseInverse().asDiagonal();
+  const Eigen6 motions = symmetric_eigen6(unit.transpose() * along_normal * unit);
+  const Vector6 shares = motions.values.cwiseMax(0.0).cwiseMin(1.0).cwiseSqrt();
   result.measure = shares(0);
   const double noise = SensorDescription().sigma(kDistance);
   result.needed = std::clamp(kNoiseShare * noise / (kSlip * radius), kLeastNeeded, 0.3);
 
-  Eigen::Index free = 0;
+  int free = 0;
   while (free < 6 && shares(free) < result.needed) ++free;
   if (free == 0) return result;
-  const std::size_t shifts = free_shifts(motions.eigenvectors().leftCols(free), moved);
+  const std::size_t shifts = free_shifts(motions.vectors, free);
   result.ambiguity = name_of(static_cast<std::size_t>(free), shifts);
   result.reason =
       fmt::format("{} (a slip by {:.1f} mm moves its surface by {:.2f} mm; the sensor needs {:.2f} mm)",

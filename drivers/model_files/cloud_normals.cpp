@@ -1,6 +1,7 @@
 #include "drivers/model_files/cloud_normals.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <queue>
@@ -14,6 +15,8 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kAround = 16;
+constexpr std::size_t kAroundLines = 64;  // where the nearest lie in a line or a heap and tell no plane
+constexpr double kLineShare = 0.1;        // spread across a line, as a share of that along it
 
 /// kAround + 1 nearest of each point, itself among them.
 class Surroundings {
@@ -36,7 +39,8 @@ class Surroundings {
   std::vector<std::size_t> counts_;
 };
 
-Vector3 direction_of_least_spread(std::span<const Vector3> points, std::span<const std::uint32_t> around) {
+/// How `around` spreads, axes in ascending order; all zero where it does not.
+SymmetricEigen spread_of(std::span<const Vector3> points, std::span<const std::uint32_t> around) {
   Vector3 mean = Vector3::Zero();
   for (const std::uint32_t i : around) mean += points[i];
   mean /= static_cast<double>(around.size());
@@ -45,9 +49,27 @@ Vector3 direction_of_least_spread(std::span<const Vector3> points, std::span<con
     const Vector3 d = points[i] - mean;
     spread += d * d.transpose();
   }
-  const double scale = spread.trace();
-  if (!(scale > 0)) return {0, 0, 1};
-  return symmetric_eigen(spread / scale).vectors.col(0).normalized();
+  return symmetric_eigen(spread / std::max(spread.trace(), 1e-300));
+}
+
+/// Closer heaps than this, in spacings, are noise rather than surface.
+constexpr double kHeap = 1.2;
+
+std::vector<Vector3> directions_of_least_spread(std::span<const Vector3> points, double spacing,
+                                                const Surroundings& around) {
+  const NearestPoints tree(points);
+  std::array<std::uint32_t, kAroundLines> more{};
+  std::array<double, kAroundLines> squares{};
+  std::vector<Vector3> normals(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    SymmetricEigen spread = spread_of(points, around.of(i));
+    const double reach = (points[around.of(i).back()] - points[i]).norm();
+    if (reach < kHeap * spacing || spread.values(1) < kLineShare * spread.values(2))
+      spread = spread_of(points, std::span(more).first(tree.nearest(points[i], more, squares)));
+    const Vector3 normal = unit_or_zero(spread.vectors.col(0));
+    normals[i] = normal.isZero() ? Vector3(0, 0, 1) : normal;
+  }
+  return normals;
 }
 
 /// One step of the spanning tree: from a point whose sign is known to one whose sign is not.
@@ -84,9 +106,7 @@ void spread_sign(const Surroundings& around, std::uint32_t seed, std::vector<Vec
 
 std::vector<Vector3> estimate_normals(std::span<const Vector3> points, double spacing) {
   const Surroundings around(points);
-  std::vector<Vector3> normals(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    normals[i] = direction_of_least_spread(points, around.of(i));
+  std::vector<Vector3> normals = directions_of_least_spread(points, spacing, around);
 
   std::vector<bool> known(points.size(), false);
   std::vector<std::vector<std::uint32_t>> parts;

@@ -38,6 +38,16 @@ constexpr std::size_t kLeastPoints = 50;
 /// as a share of the hexagonal lattice's; and its least distance as a share of its mean.
 constexpr double kSamplingShare = 0.8, kLeastOfMean = 0.87;
 
+/// Metres; beyond it floats do not resolve an object.
+constexpr double kFarthestCoordinate = 1e5;
+
+double farthest_coordinate(const Geometry& geometry) {
+  float farthest = 0;
+  for (const Point3f& p : geometry.vertices)
+    farthest = std::max({farthest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+  return static_cast<double>(farthest);
+}
+
 Error refuse(std::string_view what) {
   return {ErrorKind::bad_input, std::string(what)};
 }
@@ -213,6 +223,11 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   if (!(settings.spacing >= 0 && settings.spacing <= 1))
     return refuse(fmt::format("a spacing of {} m is out of range (0, 1]", settings.spacing));
 
+  const double farthest = farthest_coordinate(geometry) * settings.metres_per_unit;
+  if (farthest > kFarthestCoordinate)
+    return refuse(
+        fmt::format("its points lie up to {:.3g} m from the origin; check the file and --units", farthest));
+
   BuiltModel built;
   Mesh mesh = clean_mesh(geometry, settings.metres_per_unit, built.warnings);
   if (mesh.triangles.empty() && mesh.vertices.size() < kLeastPoints)
@@ -234,8 +249,8 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
     normals.push_back({to_q14(n.x()), to_q14(n.y()), to_q14(n.z()), 0});
   }
   measure(positions, header);
-  if (!(header.spacing > 0 && std::isfinite(header.radius) && header.radius < 1e6))
-    return refuse("its points coincide or lie too far apart to be a model; check the file and --units");
+  if (!(header.spacing > 0 && header.radius > 0))
+    return refuse("its points coincide as far as numbers tell; check the file and --units");
   header.support_radius = support_radius_for(header.spacing, header.radius);
 
   const Characterisability shape = characterise(cloud, header.spacing);

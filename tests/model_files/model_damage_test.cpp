@@ -1,0 +1,150 @@
+// Every kind of damage to a model image: refused with its own word, never a crash.
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "drivers/model_files/model_image.hpp"
+#include "tests/model_files/built.hpp"
+#include "tests/model_files/shapes.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+using Image = std::vector<std::byte>;
+
+const Image& good_image() {
+  static const Image image = make(shapes::cushion_with_knob(), {1, 0.02}).built.image;
+  return image;
+}
+
+ModelFault fault_of(std::span<const std::byte> image) {
+  ModelView view;
+  const ModelFault fault = ModelView::open(image, view);
+  EXPECT_EQ(view.empty(), fault != ModelFault::none);
+  return fault;
+}
+
+/// The good image with a changed header and the checksum that goes with it.
+ModelFault with_header(const std::function<void(ModelHeader&)>& change) {
+  Image image = good_image();
+  ModelHeader header;
+  std::memcpy(&header, image.data(), sizeof header);
+  change(header);
+  std::memcpy(image.data(), &header, sizeof header);
+  seal_model_image(image);
+  return fault_of(image);
+}
+
+/// The same with the first item of the section at `offset` changed.
+template <typename T>
+ModelFault with_item(std::uint64_t ModelHeader::*offset, const std::function<void(T&)>& change) {
+  Image image = good_image();
+  ModelHeader header;
+  std::memcpy(&header, image.data(), sizeof header);
+  T item;
+  std::memcpy(&item, image.data() + header.*offset, sizeof item);
+  change(item);
+  std::memcpy(image.data() + header.*offset, &item, sizeof item);
+  seal_model_image(image);
+  return fault_of(image);
+}
+
+TEST(ModelDamage, TheUndamagedImageIsWell) {
+  EXPECT_EQ(fault_of(good_image()), ModelFault::none);
+  EXPECT_EQ(with_header([](ModelHeader&) {}), ModelFault::none);
+}
+
+TEST(ModelDamage, CutShortAnywhere) {
+  const std::span<const std::byte> image = good_image();
+  for (std::size_t length = 0; length < image.size(); length += 97) {
+    const ModelFault fault = fault_of(image.first(length));
+    EXPECT_EQ(fault, length < 8 ? ModelFault::too_short : ModelFault::truncated) << length;
+  }
+  Image longer = good_image();
+  longer.resize(longer.size() + 8);
+  EXPECT_EQ(fault_of(longer), ModelFault::corrupt);
+}
+
+TEST(ModelDamage, EveryFlippedBitIsNoticed) {
+  Image image = good_image();
+  // All of the header and the first points, then a sample of the rest.
+  for (std::size_t byte = 0; byte < image.size(); byte += byte < 512 ? 1 : 1009)
+    for (int bit = 0; bit < 8; bit += byte < 512 ? 1 : 3) {
+      image[byte] ^= std::byte{1} << bit;
+      EXPECT_NE(fault_of(image), ModelFault::none) << "byte " << byte << " bit " << bit;
+      image[byte] ^= std::byte{1} << bit;
+    }
+}
+
+TEST(ModelDamage, OtherMachinesAndVersions) {
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.byte_order = 0x04030201; }), ModelFault::foreign_byte_order);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.byte_order = 0x02010403; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.version += 1; }), ModelFault::newer_version);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.version -= 1; }), ModelFault::older_version);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.magic[0] = 'X'; }), ModelFault::not_a_model);
+}
+
+TEST(ModelDamage, CountsOverTheLimitsWithTheRightChecksum) {
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.point_count = limits::kMaxModelPoints + 1; }),
+            ModelFault::over_limit);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.point_count = 0xFFFFFFFF; }), ModelFault::over_limit);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.keypoint_count = limits::kMaxModelKeypoints + 1; }),
+            ModelFault::over_limit);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.point_count = limits::kMaxModelPoints; }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.keypoint_count = limits::kMaxModelKeypoints; }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.point_count = 0; }), ModelFault::corrupt);
+}
+
+TEST(ModelDamage, OffsetsThatLeadElsewhere) {
+  for (const auto offset :
+       {&ModelHeader::positions_offset, &ModelHeader::normals_offset, &ModelHeader::neighbours_offset,
+        &ModelHeader::descriptors_offset, &ModelHeader::frames_offset})
+    for (const std::uint64_t wrong : {std::uint64_t{0}, std::uint64_t{64}, std::uint64_t{257},
+                                      good_image().size() - 64, good_image().size(), good_image().size() + 64,
+                                      std::uint64_t{1} << 63, std::numeric_limits<std::uint64_t>::max() - 63})
+      EXPECT_EQ(with_header([&](ModelHeader& h) { h.*offset = wrong; }), ModelFault::corrupt) << wrong;
+}
+
+TEST(ModelDamage, NumbersThatMakeNoSense) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               infinite = std::numeric_limits<double>::infinity();
+  for (const auto member : {&ModelHeader::spacing, &ModelHeader::support_radius, &ModelHeader::radius})
+    for (const double wrong : {nan, infinite, -infinite, 0.0, -1.0})
+      EXPECT_EQ(with_header([&](ModelHeader& h) { h.*member = wrong; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([&](ModelHeader& h) { h.centre[1] = nan; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([&](ModelHeader& h) { h.lowest[2] = h.highest[2] + 1; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([&](ModelHeader& h) { h.characterisability = 2; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([&](ModelHeader& h) { h.ambiguity = 77; }), ModelFault::corrupt);
+
+  for (const float wrong :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 100.0F})
+    EXPECT_EQ(with_item<Point3f>(&ModelHeader::positions_offset, [&](Point3f& p) { p.y = wrong; }),
+              ModelFault::corrupt);
+  EXPECT_EQ(with_item<Normal16>(&ModelHeader::normals_offset, [](Normal16& n) { n = {}; }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_item<Normal16>(&ModelHeader::normals_offset,
+                                [](Normal16& n) {
+                                  n = {-32768, -32768, -32768, 0};
+                                }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_item<std::uint16_t>(&ModelHeader::neighbours_offset, [](std::uint16_t& n) { n = 0xFFFE; }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_item<Descriptor>(&ModelHeader::descriptors_offset, [](Descriptor& d) { d.bins[7] = -1; }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_item<LocalFrame>(&ModelHeader::frames_offset, [](LocalFrame& f) { f.axes[8] = 32767; }),
+            ModelFault::corrupt);
+}
+
+TEST(ModelDamage, EveryFaultHasItsLine) {
+  for (int fault = 0; fault <= static_cast<int>(ModelFault::over_limit); ++fault) {
+    const std::string line = describe(static_cast<ModelFault>(fault));
+    EXPECT_FALSE(line.empty());
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace pliant
