@@ -35,6 +35,7 @@ int run_program(int count, char** words) {
       "2 bad input; 3 a device was lost or a write failed.");
   Work work;
   add_model_commands(program, work);
+  add_register(program, work);
   add_run(program, work);
   add_record(program, work);
   add_check(program, work);

@@ -38,25 +38,31 @@ void draw_depth(std::span<const std::uint16_t> depth, Canvas& canvas) {
     }
 }
 
+struct KeyRow {
+  std::string words;
+  int label = kNotObserved;  ///< not observed: without a colour, since such points are not drawn
+};
+
 void draw_key(std::span<const std::int8_t> labels, const std::string& title, Canvas& canvas) {
-  constexpr int kRow = 22, kLeft = 10, kTop = 10;
+  constexpr int kRow = 22, kLeft = 10, kTop = 10, kIndent = 24;
   std::array<int, 256> count{};
   for (const std::int8_t label : labels) ++count[static_cast<std::size_t>(label + 128)];
-  int rows = 1;
-  for (const int n : count) rows += n > 0 ? 1 : 0;
-  canvas.box(kLeft - 6, kTop - 6, 330, rows * kRow + 8, kBlack, 0.65);
-  canvas.text(kLeft, kTop, title, kWhite);
-  int v = kTop + kRow;
+  std::vector<KeyRow> rows;
   for (int label = 127; label >= -128; --label) {
     const int n = count[static_cast<std::size_t>(label + 128)];
     if (n == 0) continue;
-    if (label == kNotObserved) {
-      canvas.text(kLeft + 24, v, fmt::format("{}: {}, not drawn", region_word(label), n), kWhite);
-    } else {
-      canvas.box(kLeft, v, 16, 14, region_colour(label));
-      canvas.text(kLeft + 24, v, fmt::format("{}: {} points", region_word(label), n), kWhite);
-    }
+    const char* how = label == kNotObserved ? " points, not drawn" : " points";
+    rows.push_back({fmt::format("{}: {}{}", region_word(label), n, how), label});
+  }
+  int width = Canvas::text_width(title);
+  for (const KeyRow& row : rows) width = std::max(width, kIndent + Canvas::text_width(row.words));
+  canvas.box(kLeft - 6, kTop - 6, width + 12, (static_cast<int>(rows.size()) + 1) * kRow + 4, kBlack, 0.65);
+  canvas.text(kLeft, kTop, title, kWhite);
+  int v = kTop;
+  for (const KeyRow& row : rows) {
     v += kRow;
+    if (row.label != kNotObserved) canvas.box(kLeft, v, 16, 14, region_colour(row.label));
+    canvas.text(kLeft + kIndent, v, row.words, kWhite);
   }
 }
 

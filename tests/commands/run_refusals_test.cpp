@@ -1,0 +1,103 @@
+// What pliant run refuses, and how it says so.
+#include "drivers/images/png.hpp"
+#include "tests/commands/program.hpp"
+
+namespace pliant::test {
+namespace {
+
+using RunRefusals = CommandTest;
+
+TEST_F(RunRefusals, SaysWhatIsMissing) {
+  expect_refused(run_pliant({"run"}), 2, {"no source", "--source"});
+  expect_refused(run_pliant({"run", "--source", "recording:" + small_recording(1)}), 2,
+                 {"no model", "--model"});
+}
+
+TEST_F(RunRefusals, UnknownSourcesNameTheKnownOnes) {
+  for (const char* source : {"laser:0", "openni2:", "v4l2:/dev/video0", "oni:x.oni", "lcmlog:x", "nonsense"})
+    expect_refused(run_pliant({"run", "--source", source}), 2, {source, "recording:DIR", "simulated:"});
+  expect_refused(run_pliant({"run", "--source", folder_.string()}), 2, {"recording:" + folder_.string()});
+  expect_refused(run_pliant({"run", "--source", "simulated:cushoin"}), 2, {"cushoin"});
+  expect_refused(run_pliant({"run", "--source", "simulated:box?sed=2"}), 2, {"sed"});
+}
+
+TEST_F(RunRefusals, MissingFilesAreNamed) {
+  expect_refused(run_pliant({"run", "--source", "recording:" + at("none"), "--model", at("none.model")}), 2,
+                 {at("none")});
+  expect_refused(run_pliant({"run", "--source", "simulated:box", "--model", at("none.model")}), 2,
+                 {"none.model"});
+  expect_refused(run_pliant({"run", "--config", at("none.toml")}), 2, {"none.toml"});
+}
+
+TEST_F(RunRefusals, BadConfigsNameThePlace) {
+  write_file(at("p.toml"), "source = \"simulated:box\"\n[lcm]\nurll = \"none\"\n");
+  expect_refused(run_pliant({"run", "--config", at("p.toml")}), 2, {at("p.toml") + ":3:1:", "lcm.url"});
+  write_file(at("p.toml"), "source = \"simulated:box\"\n[run]\nthreads = 0\n");
+  expect_refused(run_pliant({"run", "--config", at("p.toml")}), 2, {at("p.toml") + ":3:11:", "1 to 64"});
+}
+
+TEST_F(RunRefusals, BadLcmUrlsAreRefused) {
+  expect_refused(run_pliant({"run", "--source", "simulated:box", "--lcm-url", "udpm://1.2.3.4:1"}), 2,
+                 {"1.2.3.4"});
+  expect_refused(run_pliant({"run", "--source", "simulated:box", "--lcm-url", "bogus"}), 2, {"bogus"});
+}
+
+TEST_F(RunRefusals, AFolderThatHoldsPointsIsRefused) {
+  std::filesystem::create_directories(at("points"));
+  write_file(at("points/000007.ply"), "ply\n");
+  expect_refused(run_pliant({"run", "--source", "simulated:box?frames=2&width=160&height=120", "--lcm-url",
+                             "none", "--points", at("points")}),
+                 2, {"points", "000007.ply"});
+  EXPECT_EQ(read_file(at("points/000007.ply")), "ply\n");
+}
+
+TEST_F(RunRefusals, UnwritableOutputsAreWriteFailures) {
+  const std::vector<std::string> run = {"run", "--source", "simulated:box?frames=2&width=160&height=120",
+                                        "--lcm-url", "none"};
+  for (const auto& [option, path] :
+       {std::pair{"--stats", "no/s.json"}, {"--trajectory", "no/t.txt"}, {"--points", "file/p"}}) {
+    write_file(at("file"), "x");
+    std::vector<std::string> words = run;
+    words.insert(words.end(), {option, at(path)});
+    expect_refused(run_pliant(words), 3, {path});
+  }
+}
+
+TEST_F(RunRefusals, AFullDiskIsAWriteFailure) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const Ended ended = run_pliant({"run", "--source", "simulated:cushion?frames=40&width=320&height=240",
+                                  "--lcm-url", "none", "--trajectory", "/dev/full"});
+  expect_refused(ended, 3, {"/dev/full", "No space left"});
+}
+
+TEST_F(RunRefusals, BadFramesAreSkippedAndCounted) {
+  const std::string recording = small_recording(6);
+  const std::string model = box_model();
+  const std::filesystem::path depth = std::filesystem::path(recording) / "depth";
+  const std::string whole = read_file(depth / "000001.png");
+  write_file(depth / "000001.png", whole.substr(0, whole.size() / 2));  // cut short
+  const std::vector<std::uint16_t> pixels(80 * 60, 700);
+  ASSERT_TRUE(write_png_grey16(depth / "000003.png", {pixels.data(), 80, 60, 80}));  // of another size
+  std::filesystem::remove(depth / "000004.png");                                     // missing
+  const Ended ended = run_pliant({"run", "--source", "recording:" + recording, "--model", model, "--lcm-url",
+                                  "none", "--stats", at("s.json")});
+  EXPECT_TRUE(ended.code == 0 || ended.code == 1) << ended.code << ended.err;
+  EXPECT_EQ(ended.err, "");
+  EXPECT_NE(ended.out.find("bad 3"), std::string::npos) << ended.out;
+  const std::string stats = read_file(at("s.json"));
+  EXPECT_NE(stats.find("\"frames\": 3"), std::string::npos) << stats;
+  EXPECT_NE(stats.find("\"bad_frames\": 3"), std::string::npos) << stats;
+}
+
+TEST_F(RunRefusals, WithoutAUsableFrameTheInputIsBad) {
+  const std::string recording = small_recording(2);
+  const std::string model = box_model();
+  for (const char* name : {"000000.png", "000001.png"})
+    write_file(std::filesystem::path(recording) / "depth" / name, "no picture");
+  expect_refused(
+      run_pliant({"run", "--source", "recording:" + recording, "--model", model, "--lcm-url", "none"}), 2,
+      {"no frame is usable", "000001.png"});
+}
+
+}  // namespace
+}  // namespace pliant::test

@@ -1,0 +1,3 @@
+// A fault that check_headers.sh must find.
+#pragma once
+#include <vector>

@@ -1,0 +1,5 @@
+// A fault that check_symbols.sh must find.
+#include <iostream>
+void tell(int number) {
+  std::cout << number;
+}
