@@ -8,8 +8,8 @@ namespace pliant::simulated {
 namespace {
 
 const Vector3 kHalf(0.165, 0.125, 0.052);  ///< metres
-const Vector3 kDent(0.015, -0.010, 0);     ///< its middle, model frame
-constexpr double kDentRadius = 0.095;      ///< metres
+const Vector3 kDent(0.015, -0.015, 0);     ///< its middle, model frame
+constexpr double kDentRadius = 0.110;      ///< metres
 constexpr double kDeepest = 0.035;         ///< metres
 
 double cushion(const Vector3& p) {
@@ -33,13 +33,13 @@ double share_of_dent(const Vector3& p) {
 
 /// Depth of the dent, metres: a deep press and a shallower, quicker one.
 double depth_of_dent(double phase) {
-  return kDeepest * there_and_back(phase, 50, 85, 105, 140) +
-         0.6 * kDeepest * there_and_back(phase, 195, 215, 220, 240);
+  return kDeepest * there_and_back(phase, 45, 80, 125, 160) +
+         0.6 * kDeepest * there_and_back(phase, 203, 225, 235, 255);
 }
 
 /// Height of the fist above the cushion's top, metres, and how far it stays off to the right.
 double lift_of_fist(double phase) {
-  return 0.30 * (1 - there_and_back(phase, 12, 50, 140, 172) - there_and_back(phase, 165, 195, 240, 275));
+  return 0.30 * (1 - there_and_back(phase, 10, 45, 160, 192) - there_and_back(phase, 170, 203, 255, 283));
 }
 
 class Cushion final : public Actor {

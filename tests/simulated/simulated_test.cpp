@@ -177,7 +177,7 @@ TEST(Simulated, TheCushionIsDentedAndComesBack) {
     for (std::size_t i = 0; i < truth.vertices.size(); ++i)
       off = std::max(off, (truth.parts[0] * vector(mesh.vertices[i]) - vector(truth.vertices[i])).norm());
     deepest = std::max(deepest, off);
-    if (truth.number == 180) at_rest = off;
+    if (truth.number == 190) at_rest = off;
   }
   EXPECT_NEAR(deepest, 0.035, 0.001);
   EXPECT_LT(at_rest, 1e-6);
@@ -223,6 +223,13 @@ TEST(Simulated, TheBoxLeavesAndComesBackAndIsHiddenInPart) {
   const int hidden = *std::min_element(seen.begin() + 15, seen.begin() + 120);
   EXPECT_LT(hidden, seen[0] * 3 / 4);  // the hand covers some
   EXPECT_GT(hidden, seen[0] / 4);
+}
+
+TEST(Simulated, TheBytesAreTheSameOnEveryPlatform) {
+  // To be renewed whenever scenes or sensor model change on purpose; must not depend on compiler or machine.
+  EXPECT_EQ(fingerprint("cushion?frames=20&width=320&height=240"), 0x38daaa1d453acef6U);
+  EXPECT_EQ(fingerprint("figure?frames=20&width=320&height=240"), 0x81a2b6d664bba45eU);
+  EXPECT_EQ(fingerprint("box?frames=20&width=320&height=240"), 0x5164a44cbb6556aaU);
 }
 
 TEST(Simulated, BadOptionsAreRefused) {
