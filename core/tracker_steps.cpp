@@ -28,7 +28,7 @@ std::size_t share_of_points(const TrackerState& s, double share) noexcept {
 }
 
 std::uint32_t fewest_region_points(const TrackerState& s) noexcept {
-  return std::max<std::uint32_t>(40, static_cast<std::uint32_t>(s.tables.size / 64));
+  return std::max<std::uint32_t>(32, static_cast<std::uint32_t>(s.tables.size / 128));
 }
 
 /// One round of association and alignment; readings farther off than `widest` weigh nothing.
@@ -102,7 +102,7 @@ void regroup_outliers(TrackerState& s) noexcept {
   settings.max_regions = s.settings.max_regions;
   settings.fewest_points = fewest_region_points(s);
   AssociateSettings wide;  // all that may belong to a part which moves in its own way
-  wide.points = share_of_points(s, 0.5);
+  wide.points = share_of_points(s, 1.0);
   wide.gate = kMotionGate;
   wide.with_deformed = true;
   associate(s.tables, s.surface, s.projector, s.regions, wide, s.points);

@@ -32,4 +32,13 @@ struct PlaneMoments {
   }
 };
 
+/// Tukey's weight (1 − (r/c)²)² in Q8; both in the same unit, |r| < 2^22, 0 < c < 2^22.
+[[nodiscard]] constexpr std::int32_t tukey_weight(std::int32_t residual, std::int32_t limit) noexcept {
+  const std::int32_t size = residual < 0 ? -residual : residual;
+  if (size >= limit) return 0;
+  const std::int32_t ratio = (size << 8) / limit;   // Q8, below 256
+  const std::int32_t rest = 65536 - ratio * ratio;  // Q16
+  return ((rest >> 8) * (rest >> 8)) >> 8;
+}
+
 }  // namespace pliant

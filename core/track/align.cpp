@@ -37,14 +37,6 @@ struct Spread {
   }
 };
 
-/// Tukey's weight (1 − (r/c)²)² in Q8; both in the same unit, |r| < c < 2^18.
-std::int32_t tukey(std::int32_t residual, std::int32_t limit) noexcept {
-  const std::int32_t ratio = (std::abs(residual) << 8) / limit;  // Q8
-  if (ratio >= 256) return 0;
-  const std::int32_t rest = 65536 - ratio * ratio;  // Q16
-  return ((rest >> 8) * (rest >> 8)) >> 8;
-}
-
 Matrix6 symmetric(const PlaneMoments& m, const Vector6& scale) noexcept {
   Matrix6 a;
   std::size_t k = 0;
@@ -91,7 +83,7 @@ void align(const ModelTables& model, const Surface& surface, const AlignSettings
     PlaneMoments moments;
     for (const Correspondence& c : all) {
       if (c.region != static_cast<std::int8_t>(k)) continue;
-      const std::int32_t w = tukey(c.residual, limit);
+      const std::int32_t w = tukey_weight(c.residual, limit);
       if (w == 0) continue;
       const std::int32_t px = c.point.x - centre.x, py = c.point.y - centre.y, pz = c.point.z - centre.z;
       moments.add({(py * c.nz - pz * c.ny) >> 14, (pz * c.nx - px * c.nz) >> 14,

@@ -113,6 +113,7 @@ SightCounts label(const ModelTables& model, const Surface& surface, const Projec
     points.position[i] = look.point;
     counts.facing += look.facing ? 1 : 0;
   }
+  points.frames = std::min(points.frames + 1, kMisfitFirstFrames + 1);
   counts.bulged = flood_bulges(model, surface, points);
 
   for (std::size_t i = 0; i < model.size; ++i) {
@@ -121,6 +122,8 @@ SightCounts label(const ModelTables& model, const Surface& surface, const Projec
     if (sight == Sight::agrees) {
       ++counts.agree;
       raise(points.evidence[i], -2, kEvidenceMax);
+      points.misfit[i] += (points.residual[i] * 16 - points.misfit[i]) /
+                          (points.frames <= kMisfitFirstFrames ? points.frames : kMisfitFrames);
     } else if (sight == Sight::in_front || bulged) {
       raise(points.evidence[i], 2, kEvidenceMax);
     } else if (points.evidence[i] < kEvidenceDeformed) {

@@ -17,27 +17,6 @@ constexpr double kFewestInPatch = 4;  // weighted points from which a patch has 
 constexpr std::int32_t kWidest =
     24 * kUnitsPerMillimetre * 16;  // residuals farther off say nothing, 1/256 mm
 
-/// The set's sums.
-struct Sum {
-  Matrix6 a = Matrix6::Zero();
-  Vector6 b = Vector6::Zero();
-  double points = 0;
-
-  void add(const PatchEnergy& e) noexcept {
-    a += e.a;
-    b += e.b;
-    points += e.points;
-  }
-  [[nodiscard]] Vector6 best(double noise) const noexcept {
-    Matrix6 m = a;
-    for (int i = 0; i < 6; ++i) {
-      const double sigma = i < 3 ? kPriorRotation : kPriorTranslation;
-      m(i, i) += noise * noise / (sigma * sigma);
-    }
-    return m.ldlt().solve(b);
-  }
-};
-
 PatchEnergy to_energy(const PlaneMoments& m) noexcept {
   constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
                    kResidual = 1 / 256000.0;
@@ -57,18 +36,13 @@ PatchEnergy to_energy(const PlaneMoments& m) noexcept {
   return e;
 }
 
-RigidTransform motion_about(const Vector6& x, const Vector3& centre) noexcept {
-  RigidTransform step;
-  step.rotation = rotation_from_small_vector(x.head<3>());
-  step.translation = centre + Vector3(x.tail<3>()) - step.rotation * centre;
-  return step;
-}
-
 struct Attempt {
+  std::size_t seed = 0;
   PatchSet part;
   Vector6 part_motion, rest_motion;
-  double gain = 0;  // of energy, against one motion for all
-  double part_before = 0, part_after = 0, part_points = 0, rest_points = 0;
+  PatchEnergy part_energy, rest_energy;
+  double gain = 0;         // of energy, against one motion for all
+  double part_before = 0;  // energy of the part under the rest's motion
 };
 
 class Search {
@@ -80,46 +54,42 @@ class Search {
     return split_.energy[p].points >= kFewestInPatch;
   }
 
-  /// Grows a part from `seed`.
-  [[nodiscard]] Attempt grow(std::size_t seed) const noexcept {
+  /// `seed` and the patches around it, with the motion that suits them.
+  [[nodiscard]] Attempt begin(std::size_t seed) const noexcept {
     Attempt attempt;
+    attempt.seed = seed;
     attempt.part.add(seed);
     for (std::size_t p = 0; p < patches_.count; ++p)
       if (patches_.neighbours[seed].has(p) && counts(p)) attempt.part.add(p);
+    solve(attempt);
+    return attempt;
+  }
+
+  /// Lets the part take in and give off patches until it stays.
+  void grow(Attempt& attempt) const noexcept {
     for (int round = 0; round < kRounds; ++round) {
-      solve(attempt);
-      if (round + 1 == kRounds) break;
       PatchSet grown;
-      spread(seed, attempt, grown);
+      spread(attempt.seed, attempt, grown);
       if (grown == attempt.part) break;
       attempt.part = grown;
+      solve(attempt);
     }
-    return attempt;
   }
 
  private:
   void solve(Attempt& attempt) const noexcept {
-    Sum part, rest, all;
-    for (std::size_t p = 0; p < patches_.count; ++p) {
-      if (!counts(p)) continue;
-      (attempt.part.has(p) ? part : rest).add(split_.energy[p]);
-      all.add(split_.energy[p]);
-    }
-    attempt.part_motion = part.best(noise_);
-    attempt.rest_motion = rest.best(noise_);
-    const Vector6 one = all.best(noise_);
-    attempt.part_points = part.points;
-    attempt.rest_points = rest.points;
-    attempt.gain = attempt.part_before = attempt.part_after = 0;
-    for (std::size_t p = 0; p < patches_.count; ++p) {
-      if (!counts(p)) continue;
-      const PatchEnergy& e = split_.energy[p];
-      const bool mine = attempt.part.has(p);
-      attempt.gain += e.at(one) - e.at(mine ? attempt.part_motion : attempt.rest_motion);
-      if (!mine) continue;
-      attempt.part_before += e.at(attempt.rest_motion);
-      attempt.part_after += e.at(attempt.part_motion);
-    }
+    PatchEnergy part, rest;
+    for (std::size_t p = 0; p < patches_.count; ++p)
+      if (counts(p)) (attempt.part.has(p) ? part : rest) += split_.energy[p];
+    PatchEnergy all = part;
+    all += rest;
+    attempt.part_motion = best_motion(part, noise_, nullptr);
+    attempt.rest_motion = best_motion(rest, noise_, nullptr);
+    const Vector6 one = best_motion(all, noise_, nullptr);
+    attempt.gain = all.at(one) - part.at(attempt.part_motion) - rest.at(attempt.rest_motion);
+    attempt.part_before = part.at(attempt.rest_motion);
+    attempt.part_energy = part;
+    attempt.rest_energy = rest;
   }
 
   /// Patches that the part's motion suits better than the rest's, connected with the seed.
@@ -145,34 +115,69 @@ class Search {
   double noise_;
 };
 
-/// The patches with the largest mean energy, largest first.
-std::size_t pick_seeds(const PatchTables& patches, const MotionSplit& split,
+/// The seeds with the largest gain, largest first.
+std::size_t pick_seeds(const PatchTables& patches, const Search& search,
                        std::array<std::size_t, kSeeds>& seeds) noexcept {
   std::size_t count = 0;
   std::array<double, kSeeds> worth{};
   for (std::size_t p = 0; p < patches.count; ++p) {
-    const PatchEnergy& e = split.energy[p];
-    if (e.points < kFewestInPatch) continue;
-    const double mean = e.c / e.points;
+    if (!search.counts(p)) continue;
+    const double gain = search.begin(p).gain;
     std::size_t place = count;
-    while (place > 0 && worth[place - 1] < mean) --place;
+    while (place > 0 && worth[place - 1] < gain) --place;
     if (place == kSeeds) continue;
     if (count < kSeeds) ++count;
     for (std::size_t j = count - 1; j > place; --j) {
       worth[j] = worth[j - 1];
       seeds[j] = seeds[j - 1];
     }
-    worth[place] = mean;
+    worth[place] = gain;
     seeds[place] = p;
   }
   return count;
 }
 
+/// The part must follow its motion as closely as noise allows, and clearly not the rest's.
+bool significant(const Attempt& attempt, const MotionSplitSettings& settings) noexcept {
+  const double points = attempt.part_energy.points;
+  if (attempt.gain <= 0 || points < settings.fewest_points ||
+      attempt.rest_energy.points < settings.fewest_points)
+    return false;
+  const double before = std::sqrt(std::max(0.0, attempt.part_before / points));
+  const double after = std::sqrt(std::max(0.0, attempt.part_energy.at(attempt.part_motion) / points));
+  return after <= 2.0 * settings.noise && before >= 2 * after && before >= settings.moved;
+}
+
 }  // namespace
 
-bool find_motion_split(const ModelTables& model, const PatchTables& patches, const RegionSet& regions,
-                       std::int8_t k, const MotionSplitSettings& settings, const PointState& points,
-                       MotionSplit& split) noexcept {
+Vector6 best_motion(const PatchEnergy& energy, double noise, const JointSpring* spring) noexcept {
+  Matrix6 a = energy.a;
+  Vector6 b = energy.b;
+  for (int i = 0; i < 6; ++i) {
+    const double sigma = i < 3 ? kPriorRotation : kPriorTranslation;
+    a(i, i) += noise * noise / (sigma * sigma);
+  }
+  if (spring != nullptr) {
+    Eigen::Matrix<double, 3, 6> j;  // displacement at the joint: w × arm + t
+    const Vector3& m = spring->arm;
+    j << 0, m.z(), -m.y(), 1, 0, 0,  //
+        -m.z(), 0, m.x(), 0, 1, 0,   //
+        m.y(), -m.x(), 0, 0, 0, 1;
+    a += spring->stiffness * (j.transpose() * j);
+    b += spring->stiffness * (j.transpose() * spring->displacement);
+  }
+  return a.ldlt().solve(b);
+}
+
+RigidTransform motion_about(const Vector6& x, const Vector3& centre) noexcept {
+  RigidTransform step;
+  step.rotation = rotation_from_small_vector(x.head<3>());
+  step.translation = centre + Vector3(x.tail<3>()) - step.rotation * centre;
+  return step;
+}
+
+bool find_motion_split(const PatchTables& patches, std::int8_t k, const MotionSplitSettings& settings,
+                       const PointState& points, MotionSplit& split) noexcept {
   std::int64_t sx = 0, sy = 0, sz = 0, count = 0;
   const auto all = points.correspondences.first(points.correspondence_count);
   for (const Correspondence& c : all) {
@@ -187,40 +192,31 @@ bool find_motion_split(const ModelTables& model, const PatchTables& patches, con
                         static_cast<std::int32_t>(sz / count)};
   for (std::size_t p = 0; p < patches.count; ++p) split.moments[p] = PlaneMoments();
   for (const Correspondence& c : all) {
-    if (c.region != k || std::abs(c.residual) > kWidest) continue;
+    const std::int32_t residual =
+        c.residual - points.misfit[c.index];  // what the model always gets wrong is no motion
+    if (c.region != k || std::abs(residual) >= kWidest) continue;
     const std::int32_t px = c.point.x - centre.x, py = c.point.y - centre.y, pz = c.point.z - centre.z;
     split.moments[patches.patch_of[c.index]].add(
         {(py * c.nz - pz * c.ny) >> 14, (pz * c.nx - px * c.nz) >> 14, (px * c.ny - py * c.nx) >> 14, c.nx,
          c.ny, c.nz},
-        c.residual, 256);
+        residual, tukey_weight(residual, kWidest));
   }
   for (std::size_t p = 0; p < patches.count; ++p) split.energy[p] = to_energy(split.moments[p]);
 
-  std::array<std::size_t, kSeeds> seeds{};
-  const std::size_t seed_count = pick_seeds(patches, split, seeds);
   const Search search(patches, split, settings.noise);
+  std::array<std::size_t, kSeeds> seeds{};
+  const std::size_t seed_count = pick_seeds(patches, search, seeds);
   Attempt best;
   for (std::size_t s = 0; s < seed_count; ++s) {
-    const Attempt attempt = search.grow(seeds[s]);
-    if (attempt.gain > best.gain) best = attempt;
+    Attempt attempt = search.begin(seeds[s]);
+    search.grow(attempt);
+    if (significant(attempt, settings) && attempt.gain > best.gain) best = attempt;
   }
-  if (best.gain <= 0 || best.part_points < settings.fewest_points ||
-      best.rest_points < settings.fewest_points)
-    return false;
-  // The part must follow its motion as closely as noise allows, and clearly not the rest's.
-  split.part_rms_before = std::sqrt(std::max(0.0, best.part_before / best.part_points));
-  split.part_rms = std::sqrt(std::max(0.0, best.part_after / best.part_points));
-  if (split.part_rms > 2.0 * settings.noise || split.part_rms_before < 2 * split.part_rms ||
-      split.part_rms_before < settings.moved)
-    return false;
-
-  const Vector3 centre_metres(centre.x / kUnitsPerMetre, centre.y / kUnitsPerMetre,
-                              centre.z / kUnitsPerMetre);
+  if (best.gain <= 0) return false;
   split.part = best.part;
-  split.part_motion = motion_about(best.part_motion, centre_metres);
-  split.rest_motion = motion_about(best.rest_motion, centre_metres);
-  (void)model;
-  (void)regions;
+  split.part_energy = best.part_energy;
+  split.rest_energy = best.rest_energy;
+  split.centre = Vector3(centre.x / kUnitsPerMetre, centre.y / kUnitsPerMetre, centre.z / kUnitsPerMetre);
   return true;
 }
 

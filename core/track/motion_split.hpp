@@ -20,10 +20,18 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// Energy of a patch as a function of a small motion: rotation vector about `centre` (radians), translation
 /// (metres). Energies are in metres squared, summed over weighted points.
 struct PatchEnergy {
-  Matrix6 a;
-  Vector6 b;
+  Matrix6 a = Matrix6::Zero();
+  Vector6 b = Vector6::Zero();
   double c = 0;
   double points = 0;  ///< sum of weights
+
+  PatchEnergy& operator+=(const PatchEnergy& e) noexcept {
+    a += e.a;
+    b += e.b;
+    c += e.c;
+    points += e.points;
+    return *this;
+  }
 
   [[nodiscard]] double at(const Vector6& x) const noexcept { return c - 2 * b.dot(x) + x.dot(a * x); }
 };
@@ -34,12 +42,23 @@ struct MotionSplit {
   std::array<PatchEnergy, kMaxPatches> energy;
   std::array<std::uint32_t, kMaxPatches> members;  ///< model points of the region in the patch
 
-  PatchSet part;               ///< patches of the part that moves away
-  RigidTransform part_motion;  ///< camera frame, to go before the region's pose
-  RigidTransform rest_motion;
-  double part_rms_before = 0,
-         part_rms = 0;  ///< of the part's residuals under the rest's motion and its own, metres
+  PatchSet part;                         ///< patches of the part that moves away
+  PatchEnergy part_energy, rest_energy;  ///< sums over the part's patches and the others
+  Vector3 centre = Vector3::Zero();      ///< that motions turn about, camera frame, metres
 };
+
+/// What ties a part to its neighbour: its displacement at `arm` (from the energies' centre, metres) should be
+/// `displacement`, at `stiffness` in weighted points.
+struct JointSpring {
+  Vector3 arm = Vector3::Zero();
+  Vector3 displacement = Vector3::Zero();
+  double stiffness = 0;
+};
+
+/// The motion of least energy, with a weak prior on no motion and, if given, a joint.
+[[nodiscard]] Vector6 best_motion(const PatchEnergy& energy, double noise,
+                                  const JointSpring* spring) noexcept;
+[[nodiscard]] RigidTransform motion_about(const Vector6& x, const Vector3& centre) noexcept;
 
 struct MotionSplitSettings {
   std::uint32_t fewest_points = 40;  ///< seen, of each side
@@ -48,9 +67,8 @@ struct MotionSplitSettings {
 };
 
 /// Looks for a split of region `k`; `points.correspondences` must hold its points under its current pose with
-/// a wide gate. True when a split was found that is significant and stays joined.
-bool find_motion_split(const ModelTables& model, const PatchTables& patches, const RegionSet& regions,
-                       std::int8_t k, const MotionSplitSettings& settings, const PointState& points,
-                       MotionSplit& split) noexcept;
+/// a wide gate. True when a significant one was found.
+bool find_motion_split(const PatchTables& patches, std::int8_t k, const MotionSplitSettings& settings,
+                       const PointState& points, MotionSplit& split) noexcept;
 
 }  // namespace pliant

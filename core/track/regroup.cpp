@@ -1,6 +1,8 @@
 #include "core/track/regroup.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "core/track/label.hpp"
@@ -55,6 +57,13 @@ double joint_gap(const RegroupContext& context, const RegionSet& regions, std::i
       .norm();
 }
 
+/// Every edge that crosses the border is a spring that gives by one spacing where a reading is off by its
+/// noise.
+double joint_stiffness(const Joint& joint, double noise, const ModelTables& model) noexcept {
+  const double ratio = noise * kUnitsPerMetre / model.spacing;
+  return joint.edges * ratio * ratio;
+}
+
 bool merge(const RegroupContext& context, const RegroupSettings& settings, RegionSet& regions,
            PointState& points) noexcept {
   bool changed = false;
@@ -107,8 +116,9 @@ void complete_part(const RegroupContext& context, std::int8_t k, const PointStat
 }
 
 /// Makes two regions of region `k`. The larger side keeps the id. Undone when the sides do not stay joined.
-bool apply_motion_split(const RegroupContext& context, std::int8_t k, std::size_t slot, MotionSplit& split,
-                        RegionSet& regions, PointState& points) noexcept {
+bool apply_motion_split(const RegroupContext& context, std::int8_t k, std::size_t slot,
+                        const MotionSplitSettings& settings, MotionSplit& split, RegionSet& regions,
+                        PointState& points) noexcept {
   complete_part(context, k, points, split);
   std::uint32_t part = 0, rest = 0;
   for (std::size_t p = 0; p < context.patches.count; ++p)
@@ -120,14 +130,25 @@ bool apply_motion_split(const RegroupContext& context, std::int8_t k, std::size_
   fresh = before;
   fresh.parent = k;
   fresh.frames_alike = fresh.frames_unseen = 0;
-  old.pose = (part_stays ? split.part_motion : split.rest_motion) * before.pose;
-  fresh.pose = (part_stays ? split.rest_motion : split.part_motion) * before.pose;
   for (std::size_t i = 0; i < context.model.size; ++i) {
     if (points.home[i] != k || split.part.has(context.patches.patch_of[i]) == part_stays) continue;
     points.home[i] = static_cast<std::int8_t>(slot);
   }
-  if (joint_gap(context, regions, static_cast<std::int8_t>(slot), k, points) >
-      limit_at(context, before.pose) / kUnitsPerMetre) {
+  const PatchEnergy& stays = part_stays ? split.part_energy : split.rest_energy;
+  const PatchEnergy& leaves = part_stays ? split.rest_energy : split.part_energy;
+  const Vector6 old_motion = best_motion(stays, settings.noise, nullptr);
+  const Joint joint = joint_of(context.model, points, static_cast<std::int8_t>(slot), k);
+  JointSpring spring;
+  spring.arm = before.pose * joint.centre - split.centre;
+  spring.displacement = Vector3(old_motion.head<3>()).cross(spring.arm) + Vector3(old_motion.tail<3>());
+  spring.stiffness = joint_stiffness(joint, settings.noise, context.model);
+  const Vector6 new_motion = best_motion(leaves, settings.noise, &spring);
+  old.pose = motion_about(old_motion, split.centre) * before.pose;
+  fresh.pose = motion_about(new_motion, split.centre) * before.pose;
+  const double spread = std::sqrt(std::max(0.0, leaves.at(new_motion) / leaves.points));
+  const bool torn = joint_gap(context, regions, static_cast<std::int8_t>(slot), k, points) >
+                    limit_at(context, before.pose) / kUnitsPerMetre;
+  if (torn || spread > 2.5 * settings.noise) {
     for (std::size_t i = 0; i < context.model.size; ++i)
       if (points.home[i] == static_cast<std::int8_t>(slot)) points.home[i] = k;
     old = before;
@@ -157,16 +178,14 @@ bool split_by_motion(const RegroupContext& context, const RegroupSettings& setti
     motion.noise = std::min(motion.noise, context.surface.sigma(z) * 1.5 / kUnitsPerMetre);
     motion.moved = 0.5 * limit_at(context, region.pose) / kUnitsPerMetre;
     const auto id = static_cast<std::int8_t>(k);
-    if (!find_motion_split(context.model, context.patches, regions, id, motion, points, scratch)) continue;
-    state.suspected = state.suspect == id ? state.suspected + 1 : 1;
-    state.suspect = id;
-    if (state.suspected < 2) return false;
-    state.suspected = 0;
-    state.suspect = -1;
-    return apply_motion_split(context, id, slot, scratch, regions, points);
+    int& suspected = state.suspected[k];
+    if (!find_motion_split(context.patches, id, motion, points, scratch)) {
+      suspected = 0;
+    } else if (++suspected >= 2) {
+      suspected = 0;
+      if (apply_motion_split(context, id, slot, motion, scratch, regions, points)) return true;
+    }
   }
-  state.suspect = -1;
-  state.suspected = 0;
   return false;
 }
 

@@ -16,9 +16,9 @@ struct RegroupSettings {
 
 /// Memory of the regrouping between frames.
 struct RegroupState {
-  int pause = 0;             ///< frames until the next try to split outliers off
-  std::int8_t suspect = -1;  ///< region that a motion split was found in last
-  int suspected = 0;         ///< frames in a row
+  int pause = 0;  ///< frames until the next try to split outliers off
+  std::array<int, limits::kMaxRegions>
+      suspected{};  ///< frames in a row in which two motions showed, by region
 };
 
 /// Where a region hangs on its neighbours.

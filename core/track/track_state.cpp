@@ -13,6 +13,7 @@ void PointState::lay_out(Workspace& workspace, std::size_t points) noexcept {
   label = workspace.take<std::int8_t>(points);
   match = workspace.take<std::int32_t>(points);
   residual = workspace.take<std::int32_t>(points);
+  misfit = workspace.take<std::int32_t>(points);
   position = workspace.take<IntPoint>(points);
   offset = workspace.take<IntPoint>(points);
   group = workspace.take<std::int32_t>(points);
@@ -29,9 +30,11 @@ void PointState::reset() noexcept {
   std::fill(label.begin(), label.end(), kNotObserved);
   std::fill(match.begin(), match.end(), -1);
   std::fill(residual.begin(), residual.end(), 0);
+  std::fill(misfit.begin(), misfit.end(), 0);
   std::fill(position.begin(), position.end(), IntPoint{});
   std::fill(offset.begin(), offset.end(), IntPoint{});
   correspondence_count = 0;
+  frames = 0;
 }
 
 }  // namespace pliant

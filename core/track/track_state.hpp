@@ -60,12 +60,15 @@ struct PointState {
   std::span<std::int8_t> label;
   std::span<std::int32_t> match;
   std::span<std::int32_t> residual;  ///< 1/16 mm, signed, along the normal
+  std::span<std::int32_t> misfit;    ///< where the surface usually is off the point while it stays on its
+                                     ///< region: the model's own error there, along the normal, 1/256 mm
   std::span<IntPoint> position;      ///< camera frame, 1/16 mm
   std::span<IntPoint> offset;      ///< of a deformed point from where its home puts it, camera frame, 1/16 mm
   std::span<std::int32_t> group;   ///< scratch: component or distance
   std::span<std::uint16_t> queue;  ///< scratch: breadth-first search
   std::span<Correspondence> correspondences;
   std::size_t correspondence_count = 0;
+  std::int32_t frames = 0;  ///< since the object was taken up, up to one more than kMisfitFirstFrames
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
   /// Everything belongs to the base and nothing is deformed.
@@ -75,6 +78,11 @@ struct PointState {
 inline constexpr std::uint8_t kEvidenceMax = 12;
 /// Evidence from which a point counts as deformed; three clear frames bring it there.
 inline constexpr std::uint8_t kEvidenceDeformed = 6;
+
+/// Frames over which a point's misfit is averaged: two seconds at 30 Hz, far slower than a hand.
+inline constexpr std::int32_t kMisfitFrames = 64;
+/// First frames after the object was taken up, whose plain mean the misfit starts from.
+inline constexpr std::int32_t kMisfitFirstFrames = 4;
 
 /// Lengths that a frame's decisions rest on, from the model's spacing and the sensor's noise.
 struct Tolerance {
