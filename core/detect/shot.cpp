@@ -80,7 +80,7 @@ bool ShotDescriber::describe_at(const OrientedPoints& points, const PointGrid& g
   double weight = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const Neighbour& n = neighbours_[k];
-    const Vector3 d(n.x, n.y, n.z);
+    const Vector3 d(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z));
     const double height = z.dot(d);
     const double across = d.dot(d) - height * height;
     const double w = (1 - static_cast<double>(n.distance)) * std::sqrt(across > 0 ? across : 0);
