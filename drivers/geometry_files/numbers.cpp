@@ -88,7 +88,7 @@ bool to_integer(std::string_view word, std::int64_t& value) {
 }
 
 float to_float(double value) {
-  constexpr double most = std::numeric_limits<float>::max();
+  constexpr double most = static_cast<double>(std::numeric_limits<float>::max());
   if (value > most) return std::numeric_limits<float>::infinity();
   if (value < -most) return -std::numeric_limits<float>::infinity();
   return static_cast<float>(value);
