@@ -103,6 +103,7 @@ int run(const RunOptions& options) {
   settings.track.kernels = options.kernels;
   settings.lcm_url = config->lcm.url;
   settings.lcm_prefix = config->lcm.prefix;
+  settings.publish_depth = config->lcm.publish_depth;
   settings.realtime = options.pace.value_or(source->source->live() ? "realtime" : "fast") == "realtime";
   settings.frame_limit = options.frames;
   settings.budget_ms = config->track.budget_ms;

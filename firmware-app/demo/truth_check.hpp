@@ -30,6 +30,7 @@ class RememberingSource final : public DepthSource {
   [[nodiscard]] const Geometry& mesh() const { return source_->mesh(); }
   struct Memory {
     std::int64_t number = -1;
+    bool present = false;
     std::vector<Point3f> vertices;
     RigidTransform base;
   };
@@ -50,13 +51,21 @@ class TruthCheck {
   /// On the tracking thread; no heap call.
   void look(const TrackResult& result);
 
+  /// Frames in which the object was there to be seen, and of those the tracked ones.
+  [[nodiscard]] std::int64_t present() const { return present_; }
+  [[nodiscard]] std::int64_t present_and_tracked() const { return present_and_tracked_; }
+  /// Frames that were tracked although the object was not there.
+  [[nodiscard]] std::int64_t claimed_while_gone() const { return claimed_while_gone_; }
   /// Distance of an observed point to where it truly is, micrometres.
   [[nodiscard]] const Histogram& position() const { return position_; }
-  /// Of the base region's pose at the model's middle, micrometres, and its angle, thousandths of a degree.
+  /// Of the base region's pose: against the rigid motion that the points it claims truly made, at their
+  /// middle, micrometres; and its angle, thousandths of a degree.
   [[nodiscard]] const Histogram& base_shift() const { return base_shift_; }
   [[nodiscard]] const Histogram& base_angle() const { return base_angle_; }
 
  private:
+  void compare_base(const TrackResult& result);
+
   /// A model point between vertices of the simulated mesh.
   struct Place {
     std::array<std::uint32_t, 3> vertices{};
@@ -66,8 +75,9 @@ class TruthCheck {
   std::vector<Point3f> mesh_rest_;
   std::vector<Vector3> rest_;
   std::vector<Place> places_;
-  Vector3 centre_;
+  std::vector<Vector3> where_;  ///< truly, in this frame
   RememberingSource::Memory truth_;
+  std::int64_t present_ = 0, present_and_tracked_ = 0, claimed_while_gone_ = 0;
   Histogram position_, base_shift_, base_angle_;
 };
 

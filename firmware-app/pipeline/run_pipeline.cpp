@@ -111,6 +111,8 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   loop_settings.budget_ns = newest_wins ? static_cast<std::int64_t>(settings.budget_ms * 1e6) : 0;
   loop_settings.wait_for_publisher = !newest_wins;
   loop_settings.hash = settings.hash;
+  loop_settings.publish_depth = settings.publish_depth;
+  loop_settings.camera = camera;
   loop_settings.version = settings.version;
   loop_settings.source = settings.source_name;
   loop_settings.model_id = model.header().checksum;

@@ -21,6 +21,7 @@ struct RunSettings {
   TrackSettings track;
   std::string lcm_url;  ///< "none" publishes nothing
   std::string lcm_prefix = "PLIANT";
+  bool publish_depth = false;
   bool realtime = false;          ///< frames come at their stamps' pace and the newest wins
   std::int64_t frame_limit = -1;  ///< frames to take from the source, -1 for all
   double budget_ms = 33;          ///< for one frame; only with a source that does not wait

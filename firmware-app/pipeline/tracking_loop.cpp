@@ -64,7 +64,7 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   if (tracked && figures.first_tracked < 0) figures.first_tracked = captured.frame.number;
   ++(tracked ? figures.tracked : result.state == TrackState::lost ? figures.lost : figures.searching);
 
-  hand_over(result, captured.arrival_ns);
+  hand_over(captured, result);
   if (parts_.witness.seen != nullptr) parts_.witness.seen(parts_.witness.context, captured.frame, result);
   parts_.tracker.set_work_level(work_.next_level(figures.profile.last_total()));
   if (parts_.publisher != nullptr && (state_changed || monotonic_ns() - last_status_ns_ >= kSecond))
@@ -79,14 +79,15 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   parts_.live.regions.store(static_cast<int>(result.regions.size()), std::memory_order_relaxed);
 }
 
-void TrackingLoop::hand_over(const TrackResult& result, std::int64_t arrival_ns) {
+void TrackingLoop::hand_over(const CapturedFrame& captured, const TrackResult& result) {
   const std::span<const MessageBody> bodies = parts_.messages.encode(result);
   if (settings_.hash) hash_.add(bodies);
-  parts_.latency.arrived(result.utime, arrival_ns);
+  parts_.latency.arrived(result.utime, captured.arrival_ns);
   if (parts_.publisher != nullptr) {
     // Waits for the frame before, which is normally long out; a second is more than any network needs.
     if (settings_.wait_for_publisher) static_cast<void>(parts_.publisher->flush(1000));
     parts_.publisher->publish(bodies, result.utime);
+    if (settings_.publish_depth) parts_.publisher->publish_depth(captured.frame, settings_.camera);
   } else {
     parts_.latency.sent(result.utime);
   }

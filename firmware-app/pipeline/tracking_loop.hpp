@@ -40,6 +40,8 @@ class TrackingLoop {
     std::int64_t budget_ns = 0;       ///< 0: no work is ever shed
     bool wait_for_publisher = false;  ///< no message gives way to a newer one
     bool hash = false;                ///< output_sha256 is wanted
+    bool publish_depth = false;
+    Intrinsics camera;
     std::string_view version, source;
     std::uint64_t model_id = 0;
     std::uint64_t workspace_bytes = 0;
@@ -51,7 +53,7 @@ class TrackingLoop {
 
  private:
   void take(const CapturedFrame& captured, RunFigures& figures);
-  void hand_over(const TrackResult& result, std::int64_t arrival_ns);
+  void hand_over(const CapturedFrame& captured, const TrackResult& result);
   void publish_status(const RunFigures& figures);
 
   Parts parts_;
