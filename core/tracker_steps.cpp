@@ -6,6 +6,7 @@
 #include "core/track/align.hpp"
 #include "core/track/associate.hpp"
 #include "core/track/predict.hpp"
+#include "core/track/steady.hpp"
 #include "core/tracker_state.hpp"
 
 namespace pliant {
@@ -28,7 +29,7 @@ std::size_t share_of_points(const TrackerState& s, double share) noexcept {
 }
 
 std::uint32_t fewest_region_points(const TrackerState& s) noexcept {
-  return std::max<std::uint32_t>(32, static_cast<std::uint32_t>(s.tables.size / 128));
+  return std::max<std::uint32_t>(48, static_cast<std::uint32_t>(s.tables.size / 100));
 }
 
 /// One round of association and alignment; readings farther off than `widest` weigh nothing.
@@ -41,7 +42,7 @@ void round_of_alignment(TrackerState& s, std::size_t points, std::int32_t gate, 
   finish_stage(s, Stage::associate);
   AlignSettings align_settings = base;
   align_settings.widest = widest;
-  align(s.tables, s.surface, align_settings, s.points, s.regions);
+  align(s.surface, align_settings, s.points, s.regions);
   finish_stage(s, Stage::align);
 }
 
@@ -89,6 +90,7 @@ void align_regions(TrackerState& s) noexcept {
   round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
   round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
   round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier);
+  hold_steady(s.tables, s.surface, s.regions);
   for (TrackedRegion& region : s.regions)
     if (region.alive) region.motion = region.pose * region.last_pose.inverse();
 }

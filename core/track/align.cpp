@@ -5,12 +5,11 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/track/motion_split.hpp"
+
 namespace pliant {
 
 namespace {
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kBins = 512;  // of |residual|, 1/16 mm each
 
@@ -59,9 +58,8 @@ Vector6 difference(const RigidTransform& target, const RigidTransform& pose, con
 
 }  // namespace
 
-void align(const ModelTables& model, const Surface& surface, const AlignSettings& settings,
-           const PointState& points, RegionSet& regions) noexcept {
-  (void)model;
+void align(const Surface& surface, const AlignSettings& settings, const PointState& points,
+           RegionSet& regions) noexcept {
   const auto all = points.correspondences.first(points.correspondence_count);
   std::array<Spread, limits::kMaxRegions> spreads{};
   for (const Correspondence& c : all) spreads[static_cast<std::size_t>(c.region)].add(c);

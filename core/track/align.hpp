@@ -18,8 +18,8 @@ struct AlignSettings {
 /// One Gauss–Newton step for every region with correspondences: Tukey weights at a scale from the median
 /// residual (never below the sensor's noise), the prediction as a prior that decides where the surface does
 /// not. Updates pose, scale and rms. Regions with too few correspondences keep their prediction.
-void align(const ModelTables& model, const Surface& surface, const AlignSettings& settings,
-           const PointState& points, RegionSet& regions) noexcept;
+void align(const Surface& surface, const AlignSettings& settings, const PointState& points,
+           RegionSet& regions) noexcept;
 
 /// Fewest correspondences that move a region.
 inline constexpr std::uint32_t kFewestCorrespondences = 24;

@@ -65,6 +65,20 @@ bool consider_rivals(const ModelTables& model, const RegionSet& regions, const S
   return true;
 }
 
+/// A point that is not seen goes with the region, of those around it first, under which free space allows it.
+void carry_where_allowed(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
+                         const std::array<FixedPose, limits::kMaxRegions>& poses, PointState& points,
+                         std::size_t i) noexcept {
+  if (!sighting.refuted(i, poses[static_cast<std::size_t>(points.home[i])])) return;
+  const HomeCounts around = homes_around(model, points, i);
+  int most = -1;
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (!regions[k].alive || around[k] <= most || sighting.refuted(i, poses[k])) continue;
+    most = around[k];
+    points.home[i] = static_cast<std::int8_t>(k);
+  }
+}
+
 /// Marks points behind the readings as bulged where the surface climbs to them steadily from agreeing
 /// neighbours.
 std::uint32_t flood_bulges(const ModelTables& model, const Surface& surface, PointState& points) noexcept {
@@ -107,6 +121,11 @@ SightCounts label(const ModelTables& model, const Surface& surface, const Projec
     if (alive > 1 &&
         consider_rivals(model, regions, sighting, poses, tolerance.deformed(look.point.z), look, points, i))
       look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
+    if (alive > 1 && look.sight == Sight::none) {
+      carry_where_allowed(model, regions, sighting, poses, points, i);
+      const auto home = static_cast<std::size_t>(points.home[i]);
+      look.point = poses[home].point(model.x[i], model.y[i], model.z[i]);
+    }
     points.sight[i] = look.sight;
     points.residual[i] = look.residual;
     points.match[i] = look.match;

@@ -55,6 +55,14 @@ struct JointSpring {
   double stiffness = 0;
 };
 
+/// Stiffness of a border: every edge that crosses it is a spring that gives by one spacing where a reading is
+/// off by its noise (metres).
+[[nodiscard]] inline double joint_stiffness(std::uint32_t edges, double noise,
+                                            const ModelTables& model) noexcept {
+  const double ratio = noise * kUnitsPerMetre / model.spacing;
+  return edges * ratio * ratio;
+}
+
 /// The motion of least energy, with a weak prior on no motion and, if given, a joint.
 [[nodiscard]] Vector6 best_motion(const PatchEnergy& energy, double noise,
                                   const JointSpring* spring) noexcept;

@@ -138,7 +138,7 @@ bool split_outliers(const ModelTables& model, const Surface& surface, const Proj
     align_settings.widest = radius;
     align_settings.prior_rotation = 0.5;
     align_settings.prior_translation = 0.05;
-    align(model, surface, align_settings, points, trial);
+    align(surface, align_settings, points, trial);
     radius = std::max(radius * 3 / 4, tolerance.deformed(8000) * 2);
   }
 

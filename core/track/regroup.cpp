@@ -57,13 +57,6 @@ double joint_gap(const RegroupContext& context, const RegionSet& regions, std::i
       .norm();
 }
 
-/// Every edge that crosses the border is a spring that gives by one spacing where a reading is off by its
-/// noise.
-double joint_stiffness(const Joint& joint, double noise, const ModelTables& model) noexcept {
-  const double ratio = noise * kUnitsPerMetre / model.spacing;
-  return joint.edges * ratio * ratio;
-}
-
 bool merge(const RegroupContext& context, const RegroupSettings& settings, RegionSet& regions,
            PointState& points) noexcept {
   bool changed = false;
@@ -141,7 +134,7 @@ bool apply_motion_split(const RegroupContext& context, std::int8_t k, std::size_
   JointSpring spring;
   spring.arm = before.pose * joint.centre - split.centre;
   spring.displacement = Vector3(old_motion.head<3>()).cross(spring.arm) + Vector3(old_motion.tail<3>());
-  spring.stiffness = joint_stiffness(joint, settings.noise, context.model);
+  spring.stiffness = joint_stiffness(joint.edges, settings.noise, context.model);
   const Vector6 new_motion = best_motion(leaves, settings.noise, &spring);
   old.pose = motion_about(old_motion, split.centre) * before.pose;
   fresh.pose = motion_about(new_motion, split.centre) * before.pose;

@@ -62,6 +62,15 @@ class Sighting {
     return out;
   }
 
+  /// Does the camera see through the point under `pose`, whichever way it faces? Then it cannot be there.
+  [[nodiscard]] bool refuted(std::size_t i, const FixedPose& pose) const noexcept {
+    const IntPoint p = pose.point(model_.x[i], model_.y[i], model_.z[i]);
+    int u = 0, v = 0;
+    if (!projector_.project(p, u, v)) return false;
+    const std::uint16_t z8 = surface_.depth(u, v);
+    return z8 != 0 && 2 * z8 - p.z > 2 * tolerance_.deformed(p.z);
+  }
+
  private:
   static constexpr std::int32_t kLeastFacing = 1638;  // cosine 0.1, Q14
 
