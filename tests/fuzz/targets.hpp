@@ -1,0 +1,41 @@
+// What the fuzzers call: each gives bytes to one parser and aborts when its answer breaks a promise.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace pliant {
+
+using Bytes = std::span<const std::byte>;
+
+void fuzz_camera(Bytes data);
+void fuzz_config(Bytes data);
+void fuzz_depth_list(Bytes data);
+void fuzz_model(Bytes data);
+void fuzz_obj(Bytes data);
+void fuzz_off(Bytes data);
+void fuzz_pcd(Bytes data);
+void fuzz_ply(Bytes data);
+void fuzz_png(Bytes data);
+void fuzz_sensor(Bytes data);
+void fuzz_stl(Bytes data);
+
+/// A target and the folder of its corpus.
+struct FuzzTarget {
+  const char* name;
+  void (*run)(Bytes data);
+};
+inline constexpr std::array<FuzzTarget, 11> kFuzzTargets = {{{"camera", fuzz_camera},
+                                                             {"config", fuzz_config},
+                                                             {"depth_list", fuzz_depth_list},
+                                                             {"model", fuzz_model},
+                                                             {"obj", fuzz_obj},
+                                                             {"off", fuzz_off},
+                                                             {"pcd", fuzz_pcd},
+                                                             {"ply", fuzz_ply},
+                                                             {"png", fuzz_png},
+                                                             {"sensor", fuzz_sensor},
+                                                             {"stl", fuzz_stl}}};
+
+}  // namespace pliant
