@@ -69,6 +69,38 @@ void DepthSnapshot::compute_normals(int first, int last, double metres) noexcept
     }
 }
 
+void DepthSnapshot::mark_plain(double metres) noexcept {
+  constexpr double kAlike = 0.978 * 16384 * 16384;  // cos 12°
+  for (int v = 0; v < height(); v += kNormalStep)
+    for (int u = 0; u < width(); u += kNormalStep) {
+      Normal16& n = normals_[static_cast<std::size_t>((v / kNormalStep) * lattice_width() + u / kNormalStep)];
+      if (n.x == 0 && n.y == 0 && n.z == 0) continue;
+      const Point3f p = vertex(u, v);
+      const double z = static_cast<double>(p.z);
+      const int reach = std::clamp(static_cast<int>(metres * camera_.fx / z), 2 * kNormalStep, 60);
+      const double off = 16384 * (3 * sensor_.sigma(z) + 0.05 * metres);
+      int sides = 0;
+      for (int side = 0; side < 4; ++side) {
+        const int a = u + (side == 0   ? reach
+                           : side == 1 ? -reach
+                                       : 0),
+                  b = v + (side == 2   ? reach
+                           : side == 3 ? -reach
+                                       : 0);
+        if (a < 0 || b < 0 || a >= width() || b >= height() || depth(a, b) == 0) continue;
+        const Normal16& m = normal(a, b);
+        if (static_cast<double>(std::int32_t{n.x} * m.x + std::int32_t{n.y} * m.y + std::int32_t{n.z} * m.z) <
+            kAlike)
+          continue;
+        const Point3f q = vertex(a, b);
+        const double gap = n.x * static_cast<double>(q.x - p.x) + n.y * static_cast<double>(q.y - p.y) +
+                           n.z * static_cast<double>(q.z - p.z);
+        if (std::fabs(gap) < off) ++sides;
+      }
+      n.pad = sides >= 3 ? 1 : 0;
+    }
+}
+
 bool DepthSnapshot::fit_normal(int u, int v, double metres, Normal16& out) const noexcept {
   const int centre = depth(u, v);
   if (centre == 0) return false;

@@ -28,6 +28,10 @@ class DepthSnapshot {
   /// about `metres` to each side, within the reading's own surface.
   void compute_normals(int first, int last, double metres) noexcept;
 
+  /// Marks (Normal16::pad = 1) the lattice points from which the surface goes on as one plane for `metres` to
+  /// at least three of four sides: walls, tables. After all normals.
+  void mark_plain(double metres) noexcept;
+
   [[nodiscard]] int width() const noexcept { return camera_.width; }
   [[nodiscard]] int height() const noexcept { return camera_.height; }
   [[nodiscard]] int lattice_width() const noexcept { return (camera_.width + kNormalStep - 1) / kNormalStep; }

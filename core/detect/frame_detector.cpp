@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kQuickPoints = 64;       // first look at a proposal
 constexpr std::size_t kCloseLookPoints = 200;  // second look
 constexpr std::size_t kAlignPoints = 400;      // full refinement
+constexpr double kPlainWeight =
+    0.3;                             // of agreeing with a wall, at the first look: any pose can sink into one
 constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise of a fitted normal (2-4°)
                                      // averaged over a support
 
@@ -22,6 +24,8 @@ constexpr double kCertain = 0.45;
 constexpr double kConvincing = 0.28;
 constexpr double kLastResort = 0.2;
 constexpr double kRivalShare = 0.4;
+constexpr double kMostOutside =
+    0.4;  // of the facing points; with more out of the picture, only certainty counts
 
 Vector3 to_vector(const Point3f& p) noexcept {
   return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
@@ -91,6 +95,7 @@ void FrameDetector::begin(const Surface& surface) noexcept {
   cursor_ = 0;
   round_ = 0;
   finalist_count_ = 0;
+  keypoints_used_ = 0;
   best_ = Detection();
   state_ = DetectState::working;
 }
@@ -145,6 +150,7 @@ std::int64_t FrameDetector::slice_normals() noexcept {
 }
 
 std::int64_t FrameDetector::slice_sample() noexcept {
+  snapshot_.mark_plain(model_.header().support_radius);
   constexpr int kStep = DepthSnapshot::kNormalStep;
   std::size_t count = 0;
   for (int v = 0; v < snapshot_.height(); v += kStep)
@@ -212,6 +218,7 @@ std::int64_t FrameDetector::slice_describe() noexcept {
         static_cast<double>(lean) < kLeastLean)
       continue;
     key_points_[key_count_++] = points_[i];
+    ++keypoints_used_;
   }
   if (key_count_ == settings_.keypoints || order_next_ == order_count_) {
     phase_ = Phase::match;
@@ -251,7 +258,7 @@ std::int64_t FrameDetector::slice_propose() noexcept {
   for (; cursor_ < last; ++cursor_) {
     Proposal& p = proposals_[cursor_];
     p.score = static_cast<float>(
-        pose_evidence(model_, snapshot_, pose_of(p), kQuickPoints, coarse_, widest_).score());
+        pose_evidence(model_, snapshot_, pose_of(p), kQuickPoints, coarse_, widest_, kPlainWeight).score());
   }
   if (cursor_ >= proposal_count_) {
     shortlist_count_ = std::min(kShortlist, proposal_count_);
@@ -355,7 +362,8 @@ void FrameDetector::decide() noexcept {
     }
   }
   const bool lone = best_.rival <= kRivalShare * best_.score;
-  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && lone);
+  const bool in_sight = best_.evidence.outside <= kMostOutside * best_.evidence.facing;
+  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && lone && in_sight);
   const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
   if (convincing) {
     state_ = DetectState::found;
@@ -363,7 +371,7 @@ void FrameDetector::decide() noexcept {
     ++round_;
     begin_round();
   } else {
-    const bool clear = lone && best_.twin <= kRivalShare * best_.score;
+    const bool clear = lone && in_sight && best_.twin <= kRivalShare * best_.score;
     state_ = best_.score >= kLastResort && clear ? DetectState::found : DetectState::nothing;
   }
 }

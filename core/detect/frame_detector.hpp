@@ -79,6 +79,8 @@ class FrameDetector {
   [[nodiscard]] std::span<const Candidate> candidates() const noexcept {
     return {finalists_.data(), finalist_count_};
   }
+  /// Scene keypoints described so far.
+  [[nodiscard]] std::size_t keypoints_used() const noexcept { return keypoints_used_; }
   /// The best pose so far; to be believed only in state found.
   [[nodiscard]] const Detection& best() const noexcept { return best_; }
 
@@ -140,6 +142,7 @@ class FrameDetector {
   std::size_t cursor_ = 0;  // within the phase
   std::size_t point_count_ = 0;
   std::size_t order_count_ = 0, order_next_ = 0;
+  std::size_t keypoints_used_ = 0;
   std::size_t key_count_ = 0;  // of this round
   std::size_t proposal_count_ = 0;
   std::size_t shortlist_count_ = 0;

@@ -133,12 +133,15 @@ std::size_t Grouping::drop_inconsistent(std::span<const PosedMatch> matches, std
   constexpr std::size_t kWords = kMostMembers / 64;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t w = 0; w < kWords; ++w) bits_[i * kWords + w] = 0;
+  const auto length = [](const Point3f& a, const Point3f& b) {
+    const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    return std::sqrt(x * x + y * y + z * z);
+  };
+  const auto limit = static_cast<float>(tolerance);
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const PosedMatch &a = matches[members_[i]], &b = matches[members_[j]];
-      const double in_model = std::sqrt(squared(to_vector(a.model) - to_vector(b.model)));
-      const double in_scene = std::sqrt(squared(to_vector(a.scene) - to_vector(b.scene)));
-      if (std::fabs(in_model - in_scene) > tolerance) continue;
+      if (std::fabs(length(a.model, b.model) - length(a.scene, b.scene)) > limit) continue;
       bits_[i * kWords + j / 64] |= std::uint64_t{1} << (j % 64);
       bits_[j * kWords + i / 64] |= std::uint64_t{1} << (i % 64);
     }
@@ -205,6 +208,14 @@ std::size_t Grouping::group(std::span<const PosedMatch> all, const GroupingSetti
     const PosedMatch& seed = matches[seeds_[k].index];
     std::size_t count = 0;
     RigidTransform pose = pose_from_frames(seed);
+    // A seed that a known group explains, at about the group's attitude, would only find that group again.
+    bool explained = false;
+    for (std::size_t g = 0; g < found && settings.use_frames; ++g) {
+      const Vector3 gap = groups[g].transform * to_vector(seed.model) - to_vector(seed.scene);
+      explained = explained || (squared(gap) < settings.tolerance * settings.tolerance &&
+                                cos_angle(groups[g].transform.rotation.transpose() * pose.rotation) > 0.9);
+    }
+    if (explained) continue;
     if (settings.use_frames) {
       count = gather(matches, pose, seed.model, settings.tolerance, settings.frame_tolerance);
     } else {
@@ -233,7 +244,8 @@ std::size_t Grouping::group(std::span<const PosedMatch> all, const GroupingSetti
   }
   // By falling size; equals keep their order.
   for (std::size_t g = 1; g < found; ++g)
-    for (std::size_t k = g; k > 0 && groups[k].members > groups[k - 1].members; --k) std::swap(groups[k], groups[k - 1]);
+    for (std::size_t k = g; k > 0 && groups[k].members > groups[k - 1].members; --k)
+      std::swap(groups[k], groups[k - 1]);
   return found;
 }
 

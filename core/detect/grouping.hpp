@@ -30,9 +30,9 @@ struct GroupingSettings {
   double tolerance = 0.01;  ///< by how much distances within the model and the scene may differ, metres, > 0
   double frame_tolerance = 0.15;  ///< by how much a local frame may be off, radians: what a seed's pose
                                   ///< allows a match to be off grows with its distance from the seed by this
-  bool use_frames = true;     ///< off: pairwise distances alone
-  std::uint32_t seeds = 256;  ///< matches from which groups are grown, the best first [1, 1024]
-  std::uint32_t least = 4;    ///< members of a group worth having [3, …]
+  bool use_frames = true;         ///< off: pairwise distances alone
+  std::uint32_t seeds = 256;      ///< matches from which groups are grown, the best first [1, 1024]
+  std::uint32_t least = 4;        ///< members of a group worth having [3, …]
 };
 
 /// Every seed (a match with its local frames: a full pose) gathers the matches that its pose explains and

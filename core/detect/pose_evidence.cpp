@@ -19,7 +19,7 @@ constexpr float kNear = 0.05F;        // metres; nearer points have no pixel
 }  // namespace
 
 PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot, const RigidTransform& pose,
-                           std::size_t count, double tolerance, double most) noexcept {
+                           std::size_t count, double tolerance, double most, double plain_weight) noexcept {
   const FastTransform fast(pose);
   const auto widest = static_cast<float>(most);
   const auto resolvable = static_cast<float>(kResolvable * model.radius());
@@ -59,7 +59,8 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
         ++evidence.agreeing;
         const float ratio = along / limit;
         const float telling = noise > resolvable ? resolvable / noise : 1;
-        evidence.agreement += static_cast<double>(telling * alike * (1 - ratio * ratio));
+        evidence.agreement +=
+            static_cast<double>(telling * alike * (1 - ratio * ratio)) * (seen.pad != 0 ? plain_weight : 1);
       } else {
         ++evidence.crossing;
       }

@@ -37,7 +37,7 @@ struct PoseEvidence {
 /// are not counted.
 [[nodiscard]] PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot,
                                          const RigidTransform& pose, std::size_t count, double tolerance,
-                                         double most) noexcept;
+                                         double most, double plain_weight = 1) noexcept;
 
 /// Projective point-to-plane alignment (Chen, Medioni 1992; Blais, Levine 1995) of model points [0, count)
 /// from `pose`: `iterations` steps with a gate that narrows from `gate` (metres) to three times `tolerance` +

@@ -268,6 +268,7 @@ double find_instance(RegistrationState& s, RigidTransform& pose) noexcept {
     for (std::size_t k = 0; k < count; ++k) {
       // A group with a fraction of the best one's members and a clear winner before it need not be tried.
       if (best.score > 0.5 && 2 * groups[k].members < groups[0].members) break;
+      if (best.score > 0.8) break;
       try_pose(s, groups[k].transform, 2 * match_tolerance(s), best);
     }
   }

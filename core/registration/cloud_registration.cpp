@@ -316,8 +316,10 @@ const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& fr
     }
   s.one_view = true;
   s.eye = Vector3::Zero();
+  const std::size_t keys = s.key_count;
   if (prepare(s.picture_points.first(pixels)) == 0) return s.result;
   done(RegistrationStage::normals);
+  s.key_count = keys;
   for (std::size_t k = 0; k < count; ++k) complete(k, seen[k].pose, seen[k].score);
   return finish(count);
 }

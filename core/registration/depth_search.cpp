@@ -55,6 +55,7 @@ std::size_t search_picture(RegistrationState& s, const DepthFrame& frame, const 
   surface.build(frame, {0, 0, camera.width, camera.height});
   detector.begin(surface);
   while (detector.state() == DetectState::working) detector.step(1000000);
+  s.key_count = detector.keypoints_used();
   if (detector.state() != DetectState::found || seen.empty()) return 0;
   const Detection& best = detector.best();
   seen[0] = {best.pose, best.score};
