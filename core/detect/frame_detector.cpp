@@ -365,14 +365,15 @@ void FrameDetector::decide() noexcept {
   const bool in_sight = best_.evidence.outside <= kMostOutside * best_.evidence.facing;
   const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && lone && in_sight);
   const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
-  if (convincing) {
+  const bool clear = lone && in_sight && best_.twin <= kRivalShare * best_.score;
+  const bool last_resort = (last || round_ >= 2) && best_.score >= kLastResort && clear;
+  if (convincing || last_resort) {
     state_ = DetectState::found;
-  } else if (!last) {
+  } else if (last) {
+    state_ = DetectState::nothing;
+  } else {
     ++round_;
     begin_round();
-  } else {
-    const bool clear = lone && in_sight && best_.twin <= kRivalShare * best_.score;
-    state_ = best_.score >= kLastResort && clear ? DetectState::found : DetectState::nothing;
   }
 }
 
