@@ -97,15 +97,16 @@ void DisparityImage::draw_triangle(const Corner& a, const Corner& b, const Corne
 
 void DisparityImage::draw_plane(const Vector3& normal, double offset,
                                 bool (*covers)(const Vector3& in_camera, const void*), const void* context) {
-  for (int v = 0; v < camera_.height; ++v)
+  for (int v = 0; v < camera_.height; ++v) {
+    std::int32_t* row = pixels_.data() + static_cast<std::ptrdiff_t>(v) * camera_.width;
     for (int u = 0; u < camera_.width; ++u) {
       const Vector3 ray((u - camera_.cx) / camera_.fx, (v - camera_.cy) / camera_.fy, 1);
       const double inverse = normal.dot(ray) / offset;  // 1 / z
       if (!(inverse > 0) || inverse > 1 / kNearest) continue;
       if (!covers(ray / inverse, context)) continue;
-      std::int32_t& pixel = pixels_[static_cast<std::size_t>(v * camera_.width + u)];
-      pixel = std::max(pixel, static_cast<std::int32_t>(kFocalBaseline * kUnit * inverse));
+      row[u] = std::max(row[u], static_cast<std::int32_t>(kFocalBaseline * kUnit * inverse));
     }
+  }
 }
 
 bool DisparityImage::sees(const Vector3& vertex, double tolerance) const {

@@ -24,7 +24,7 @@ constexpr std::uint32_t mixed32(std::uint32_t x) {
 
 /// Nearly Gaussian integer, mean 0, standard deviation 65536: the sum of twelve uniform 16-bit numbers.
 constexpr std::int32_t gaussian(std::uint64_t a, std::uint64_t b) {
-  std::int64_t sum = -12 * 32768;
+  std::int64_t sum = std::int64_t{-12} * 32768;
   for (std::uint64_t part = 0; part < 3; ++part) {
     const std::uint64_t bits = mixed(a, 3 * b + part);
     for (int shift = 0; shift < 64; shift += 16) sum += static_cast<std::int64_t>(bits >> shift & 0xffff);

@@ -14,7 +14,7 @@ namespace {
 constexpr std::int32_t kPixel = 1 << kDisparityBits;
 constexpr double kFullWidth = 640;  ///< pixels; disparity is measured at this size
 constexpr std::uint32_t kFlickerSize = 256, kFixedSize = 128, kFixedLayers = 8;
-constexpr std::uint32_t kFixedRow = kFixedLayers * kFixedSize;
+constexpr std::size_t kFixedRow = std::size_t{kFixedLayers} * kFixedSize;
 
 /// Flicker before rounding to eighths, in eighths: with the rounding it shows as the 0.5 to 0.7 of a still
 /// scene at 0.45 to 0.65 m.
@@ -51,7 +51,8 @@ StructureSensor::StructureSensor(const Intrinsics& camera, const SensorDescripti
   for (std::uint32_t layer = 0; layer < kFixedLayers; ++layer) {
     const NoiseField field(kFixedSize, mixed(seed, 100 + layer));
     for (std::uint32_t v = 0; v < kFixedSize; ++v)
-      std::copy_n(field.row(v), kFixedSize, fixed_fields_.data() + v * kFixedRow + layer * kFixedSize);
+      std::copy_n(field.row(v), kFixedSize,
+                  fixed_fields_.data() + v * kFixedRow + std::size_t{layer} * kFixedSize);
   }
 
   const auto most = static_cast<std::size_t>(8 * kFocalBaseline / sensor.near_limit);
@@ -63,7 +64,7 @@ StructureSensor::StructureSensor(const Intrinsics& camera, const SensorDescripti
     const double fixed = std::sqrt(std::max(all * all - flicker * flicker - 1.0 / 12, 0.0));
     deviation_.push_back(
         {static_cast<std::int32_t>(256 * kInterpolation * fixed), static_cast<std::int32_t>(256 * flicker)});
-    millimetres_.push_back(z > 8 ? std::uint16_t{0} : static_cast<std::uint16_t>(1000 * z + 0.5));
+    millimetres_.push_back(z > 8 ? std::uint16_t{0} : static_cast<std::uint16_t>(std::floor(1000 * z + 0.5)));
   }
 }
 
@@ -93,9 +94,9 @@ void StructureSensor::find_shadow(const std::int32_t* row, std::uint32_t key) {
 int StructureSensor::fixed_error(const std::int8_t* fixed_row, std::uint32_t u, std::int32_t disparity) {
   const auto layer = static_cast<std::uint32_t>(disparity >> kDisparityBits);
   const int part = (disparity >> (kDisparityBits - 8)) & 255;
-  const std::int8_t* at = fixed_row + (u % kFixedSize);
-  return (256 - part) * at[layer % kFixedLayers * kFixedSize] +
-         part * at[(layer + 1) % kFixedLayers * kFixedSize];
+  const std::size_t at = u % kFixedSize;
+  return (256 - part) * fixed_row[std::size_t{layer % kFixedLayers} * kFixedSize + at] +
+         part * fixed_row[std::size_t{(layer + 1) % kFixedLayers} * kFixedSize + at];
 }
 
 std::int32_t StructureSensor::matched_at_edge(const Rows& rows, int u, int flicker, int fixed) const {

@@ -18,7 +18,7 @@ class Grid {
  public:
   Grid(Solid solid, const Vector3& low, const Vector3& high, double cell) : low_(low), cell_(cell) {
     for (int k = 0; k < 3; ++k) size_[k] = static_cast<int>((high[k] - low[k]) / cell) + 2;
-    samples_.reserve(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
+    samples_.reserve(index(size_[0] - 1, size_[1] - 1, size_[2] - 1) + 1);
     for (int z = 0; z < size_[2]; ++z)
       for (int y = 0; y < size_[1]; ++y)
         for (int x = 0; x < size_[0]; ++x) samples_.push_back(solid(node(x, y, z)));
@@ -84,7 +84,10 @@ class Grid {
  private:
   [[nodiscard]] Vector3 node(int x, int y, int z) const { return low_ + cell_ * Vector3(x, y, z); }
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
-    return static_cast<std::size_t>((z * size_[1] + y) * size_[0] + x);
+    const auto width = static_cast<std::size_t>(size_[0]);
+    const auto height = static_cast<std::size_t>(size_[1]);
+    return (static_cast<std::size_t>(z) * height + static_cast<std::size_t>(y)) * width +
+           static_cast<std::size_t>(x);
   }
   [[nodiscard]] double sample(const std::array<int, 3>& n) const { return samples_[index(n[0], n[1], n[2])]; }
 

@@ -36,7 +36,7 @@ class RecordingTest : public testing::Test {
   [[nodiscard]] static std::string file_of(int i) { return "depth/" + std::to_string(i) + ".png"; }
   /// Every pixel of picture i is 100 + i.
   void put_picture(int i, int width = kWidth) const {
-    const std::vector<std::uint16_t> pixels(static_cast<std::size_t>(width * kHeight),
+    const std::vector<std::uint16_t> pixels(static_cast<std::size_t>(width) * kHeight,
                                             static_cast<std::uint16_t>(100 + i));
     ASSERT_TRUE(write_png_grey16(folder_ / file_of(i), {pixels.data(), width, kHeight, width}));
   }

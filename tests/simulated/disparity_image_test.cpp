@@ -28,10 +28,11 @@ TEST(DisparityImage, TrianglesThatShareEdgesLeaveNoGapAndHoldThePlane) {
   std::vector<std::uint8_t> facing(vertices.size(), 0);
   image.draw(vertices, triangles, facing);
   EXPECT_EQ(std::count(facing.begin(), facing.end(), 1), 9);
+  std::size_t i = 0;
   for (int v = 0; v < kCamera.height; ++v)
     for (int u = 0; u < kCamera.width; ++u) {
       const double expected = kFocalBaseline / depth(u, v);
-      const double drawn = image.pixels()[static_cast<std::size_t>(v * kCamera.width + u)] / kUnit;
+      const double drawn = image.pixels()[i++] / kUnit;
       ASSERT_NEAR(drawn, expected, 1e-3) << u << "," << v;
     }
 }

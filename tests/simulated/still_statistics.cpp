@@ -66,12 +66,13 @@ class Analysis {
   [[nodiscard]] bool inside(int u, int v) const {
     return u >= 0 && v >= 0 && u < scene_.width && v < scene_.height;
   }
-  [[nodiscard]] const Pixel& at(int u, int v) const {
-    return pixels_[static_cast<std::size_t>(v * scene_.width + u)];
+  [[nodiscard]] std::size_t place(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(scene_.width) + static_cast<std::size_t>(u);
   }
+  [[nodiscard]] const Pixel& at(int u, int v) const { return pixels_[place(u, v)]; }
   /// Disparity of a reading off the pixel's mean, eighths.
   [[nodiscard]] double off(const std::vector<std::uint16_t>& frame, int u, int v) const {
-    return kEighths / frame[static_cast<std::size_t>(v * scene_.width + u)] - kEighths / at(u, v).mean;
+    return kEighths / frame[place(u, v)] - kEighths / at(u, v).mean;
   }
 
  private:
@@ -103,7 +104,7 @@ StillStatistics statistics_of(const StillScene& scene) {
         edges_read += p.share;
         double far = 0;
         for (const auto& frame : scene.frames) {
-          const std::uint16_t d = frame[static_cast<std::size_t>(v * scene.width + u)];
+          const std::uint16_t d = frame[analysis.place(u, v)];
           far += d > 0 && std::fabs(d - p.mean) > 10 ? 1 : 0;
         }
         flying += far / static_cast<double>(scene.frames.size());

@@ -33,7 +33,7 @@ TEST(StructureSensor, DepthComesInEighthsOfAPixelOfDisparity) {
   StructureSensor sensor(kCamera, {}, 1);
   std::set<int> possible{0};
   for (int eighths = 1; eighths < 1200; ++eighths)
-    possible.insert(static_cast<int>(8 * 42750.0 / eighths + 0.5));
+    possible.insert(static_cast<int>(std::lround(8 * 42750.0 / eighths)));
   for (const double z : {0.5, 0.7, 1.3, 2.2})
     for (const std::uint16_t d : measure(sensor, wall(z), 3)) ASSERT_TRUE(possible.count(d)) << d;
 }
@@ -74,9 +74,10 @@ TEST(StructureSensor, ShadowLiesLeftOfNearThingsAndIsAsWideAsTheBaseLineHasIt) {
   const double geometric = kFocalBaseline * (1 / 0.7 - 1 / 1.2);  // 25 pixels
   double left_gap = 0;
   double right_gap = 0;
-  for (int v = 190; v < 290; ++v)
-    for (int u = 150; u < 500; ++u) {
-      if (depth[static_cast<std::size_t>(v * 640 + u)] != 0) continue;
+  for (std::size_t v = 190; v < 290; ++v)
+    for (std::size_t column = 150; column < 500; ++column) {
+      if (depth[v * 640 + column] != 0) continue;
+      const auto u = static_cast<double>(column);
       left_gap += u < left_edge + 5 && u > left_edge - geometric - 10 ? 0.01 : 0;
       right_gap += u > right_edge - 5 && u < right_edge + geometric + 10 ? 0.01 : 0;
     }
