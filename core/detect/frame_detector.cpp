@@ -367,7 +367,7 @@ void FrameDetector::decide() noexcept {
   const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
   const bool clear = lone && in_sight && best_.twin <= kRivalShare * best_.score;
   const bool last_resort = (last || round_ >= 2) && best_.score >= kLastResort && clear;
-  if (convincing || last_resort) {
+  if ((convincing || last_resort) && (last || !settings_.exhaustive)) {
     state_ = DetectState::found;
   } else if (last) {
     state_ = DetectState::nothing;

@@ -27,7 +27,8 @@ struct DetectSettings {
   std::uint32_t keypoints = 1024;        ///< scene keypoints described in a round [64, 4096]
   std::uint32_t rounds = 3;              ///< rounds of further keypoints until the object is found [1, 8]
   std::uint32_t model_keypoints = 1024;  ///< of the model's, taken from the front [64, 2048]
-  std::uint32_t matches = 4;             ///< model keypoints tried for each scene keypoint [1, 8]
+  bool exhaustive = false;    ///< on: all rounds, even when the object is found: for several instances
+  std::uint32_t matches = 4;  ///< model keypoints tried for each scene keypoint [1, 8]
 };
 
 enum class DetectState : std::uint8_t {

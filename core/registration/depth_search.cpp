@@ -26,6 +26,7 @@ void lay_out(Workspace& workspace, const RegistrationState& s, const Intrinsics&
              FrameDetector& detector) noexcept {
   DetectSettings settings;
   settings.rounds = 4;  // there is no next frame to try
+  settings.exhaustive = s.settings.max_instances > 1;
   surface.lay_out(workspace, camera);
   detector.lay_out(workspace, s.model, camera, settings);
 }
