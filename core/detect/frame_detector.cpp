@@ -198,7 +198,7 @@ std::int64_t FrameDetector::slice_sample() noexcept {
       order_[placed++] = static_cast<std::uint32_t>(at);
     }
   begin_round();
-  return static_cast<std::int64_t>(count) / 4 + 1;
+  return static_cast<std::int64_t>(count) / 2 + 1;
 }
 
 void FrameDetector::begin_round() noexcept {
@@ -224,7 +224,7 @@ std::int64_t FrameDetector::slice_describe() noexcept {
     phase_ = Phase::match;
     cursor_ = 0;
   }
-  return 30 * static_cast<std::int64_t>(kKeys);
+  return 90 * static_cast<std::int64_t>(kKeys);
 }
 
 std::int64_t FrameDetector::slice_match() noexcept {
@@ -272,7 +272,7 @@ std::int64_t FrameDetector::slice_propose() noexcept {
     cursor_ = 0;
     if (hinted_ && round_ == 0) try_pose(hint_);
   }
-  return static_cast<std::int64_t>(kBatch) * 5;
+  return static_cast<std::int64_t>(kBatch) * 8;
 }
 
 bool FrameDetector::same_place(const RigidTransform& a, const RigidTransform& b) const noexcept {
@@ -281,11 +281,11 @@ bool FrameDetector::same_place(const RigidTransform& a, const RigidTransform& b)
          cos_angle(a.rotation.transpose() * b.rotation) > 0.9;
 }
 
-void FrameDetector::judge(Candidate& candidate, std::size_t count) const noexcept {
+void FrameDetector::judge(Candidate& candidate, std::size_t count, double floor) const noexcept {
   candidate.evidence = pose_evidence(model_, snapshot_, candidate.pose, count, fine_, widest_);
   candidate.score = candidate.evidence.score();
   candidate.seamless = 0;
-  if (candidate.score <= 0) return;
+  if (candidate.score <= 0 || candidate.score <= floor) return;  // the seam could only lower it
   candidate.seamless = seam_evidence(model_, snapshot_, candidate.pose, kEvidencePoints, 0.5 * fine_).share();
   candidate.score -= candidate.seamless;
 }
@@ -311,7 +311,10 @@ void FrameDetector::try_pose(const RigidTransform& pose) noexcept {
   Candidate candidate;
   candidate.pose = pose;
   refine_pose(model_, snapshot_, kCloseLookPoints, coarse_, fine_, 4, candidate.pose);
-  judge(candidate, kCloseLookPoints);
+  // What scores below every finalist is dropped anyway.
+  double floor = 10;
+  for (std::size_t k = 0; k < finalist_count_; ++k) floor = std::min(floor, finalists_[k].score);
+  judge(candidate, kCloseLookPoints, finalist_count_ == kFinalists ? floor : -10);
   keep(candidate);
 }
 
@@ -323,7 +326,7 @@ std::int64_t FrameDetector::slice_shortlist() noexcept {
     phase_ = Phase::settle;
     cursor_ = 0;
   }
-  return 120;
+  return 300;
 }
 
 std::int64_t FrameDetector::slice_settle() noexcept {
@@ -332,16 +335,16 @@ std::int64_t FrameDetector::slice_settle() noexcept {
     // The object may have deformed: a pose that fits all of it fairly says that it is there, one that fits
     // its largest rigid part closely says where.
     refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.5 * fine_, 6, candidate.pose);
-    judge(candidate, kEvidencePoints);
+    judge(candidate, kEvidencePoints, -10);
     Candidate close = candidate;
     refine_pose(model_, snapshot_, kAlignPoints, fine_, 0.1 * fine_, 8, close.pose);
-    judge(close, kEvidencePoints);
+    judge(close, kEvidencePoints, -10);
     const double score = std::max(candidate.score, close.score);
     if (close.score > 0.5 * candidate.score) candidate = close;
     candidate.score = score;
   }
   if (cursor_ >= finalist_count_) decide();
-  return 400;
+  return 1500;
 }
 
 void FrameDetector::decide() noexcept {

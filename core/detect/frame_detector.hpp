@@ -106,7 +106,7 @@ class FrameDetector {
   std::int64_t slice_settle() noexcept;
   [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
   void try_pose(const RigidTransform& pose) noexcept;
-  void judge(Candidate& candidate, std::size_t count) const noexcept;
+  void judge(Candidate& candidate, std::size_t count, double floor) const noexcept;
   void keep(const Candidate& candidate) noexcept;
   void decide() noexcept;
   [[nodiscard]] bool same_place(const RigidTransform& a, const RigidTransform& b) const noexcept;
