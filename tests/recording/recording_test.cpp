@@ -85,7 +85,8 @@ TEST_F(RecordingTest, DeliversEveryFrameInOrder) {
     EXPECT_EQ(item.frame.width, kWidth);
     EXPECT_EQ(item.frame.height, kHeight);
     const std::uint16_t* d = item.frame.depth;
-    EXPECT_TRUE(std::all_of(d, d + kWidth * kHeight, [&](std::uint16_t p) { return p == 100 + i; }));
+    EXPECT_TRUE(
+        std::all_of(d, d + std::ptrdiff_t{kWidth} * kHeight, [&](std::uint16_t p) { return p == 100 + i; }));
   }
   for (int i = 0; i < 3; ++i) {
     (*source)->next(5000, item);
@@ -179,7 +180,7 @@ TEST_F(RecordingTest, ReadsTheRealRecording) {
     EXPECT_EQ(item.frame.number, frames);
     ASSERT_EQ(item.frame.utime, (frames * std::int64_t{1000000} + 15) / 30);
     const std::uint16_t* d = item.frame.depth;
-    EXPECT_GT(std::count_if(d, d + 320 * 240, [](std::uint16_t p) { return p > 0; }), 20000);
+    EXPECT_GT(std::count_if(d, d + std::ptrdiff_t{320} * 240, [](std::uint16_t p) { return p > 0; }), 20000);
     ++frames;
   }
   EXPECT_EQ(item.event, SourceEvent::end) << item.fault;

@@ -21,7 +21,7 @@ class RecordingWriterTest : public testing::Test {
     fs::remove_all(folder_);
     camera_.intrinsics = {40, 30, 50, 51, 20, 15, 8000};
     camera_.sensor.noise_floor = 0.0007;
-    pixels_.resize(50 * 30);
+    pixels_.resize(std::size_t{50} * 30);
   }
   void TearDown() override { fs::remove_all(folder_); }
 
@@ -29,7 +29,7 @@ class RecordingWriterTest : public testing::Test {
   DepthFrame frame(int i) {
     for (std::size_t p = 0; p < pixels_.size(); ++p)
       pixels_[p] = static_cast<std::uint16_t>(p + 1000 * static_cast<std::size_t>(i));
-    return {pixels_.data(), 40, 30, 50, 1305031102175304 + i * std::int64_t{33333}, 7 * i};
+    return {pixels_.data(), 40, 30, 50, 1305031102175304 + i * std::int64_t{33333}, std::int64_t{7} * i};
   }
   [[nodiscard]] std::string text(const char* name) const {
     const Result<std::string> text = read_text_file(folder_ / name, 1 << 20);

@@ -22,7 +22,7 @@ StillScene take(DepthSource& source, int count) {
     source.next(5000, item);
     if (item.event != SourceEvent::frame) break;
     const DepthFrame& f = item.frame;
-    scene.frames.emplace_back(f.depth, f.depth + f.width * f.height);
+    scene.frames.emplace_back(f.depth, f.depth + static_cast<std::ptrdiff_t>(f.width) * f.height);
   }
   return scene;
 }

@@ -24,7 +24,7 @@ DisparityImage wall(double z) {
 
 std::vector<std::uint16_t> measure(StructureSensor& sensor, const DisparityImage& scene,
                                    std::int64_t number) {
-  std::vector<std::uint16_t> depth(640 * 480);
+  std::vector<std::uint16_t> depth(std::size_t{640} * 480);
   sensor.measure(scene, number, depth);
   return depth;
 }
