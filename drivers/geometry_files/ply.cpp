@@ -42,9 +42,9 @@ class NumberStream {
   /// The error after a failed read().
   [[nodiscard]] Error error(const PlyElement& element, std::uint64_t item) const {
     if (ended_)
-      return here(fmt::format("the file ends inside {} {} of {}; is it cut short?", element.name, item,
+      return here(fmt::format("the file ends inside {} {} of {}; is it cut short?", shown(element.name), item,
                               element.count));
-    return here(fmt::format("'{}' is no number ({} {})", shown(word_), element.name, item));
+    return here(fmt::format("'{}' is no number ({} {})", shown(word_), shown(element.name), item));
   }
   [[nodiscard]] Error here(std::string_view what) const {
     return ascii() ? line_error(name_, words_.line(), what) : byte_error(name_, position_, what);
@@ -77,13 +77,14 @@ Outcome read_item(NumberStream& stream, const PlyElement& element, std::uint64_t
     item.scalars[p] = property.is_list ? 0 : value;
     if (!property.is_list) continue;
     if (!(value >= 0) || value != std::floor(value) || value > static_cast<double>(stream.remaining()))
-      return stream.here(fmt::format("{} {} has an impossible list length", element.name, index));
+      return stream.here(fmt::format("{} {} has an impossible list length", shown(element.name), index));
     const auto length = static_cast<std::uint64_t>(value);
     for (std::uint64_t i = 0; i < length; ++i) {
       if (!stream.read(property.type, value)) return stream.error(element, index);
       if (static_cast<int>(p) != wanted) continue;
       if (!(value >= -1) || value > 4294967295.0 || value != std::floor(value))
-        return stream.here(fmt::format("{} {} holds an impossible vertex number", element.name, index));
+        return stream.here(
+            fmt::format("{} {} holds an impossible vertex number", shown(element.name), index));
       item.wanted.push_back(static_cast<std::int64_t>(value));
     }
   }
@@ -116,7 +117,7 @@ class PlyReader {
       return stream_.here(
           fmt::format("the header says {} of element '{}', but the file has room for {} at most; "
                       "is it cut short?",
-                      element.count, element.name, room));
+                      element.count, shown(element.name), room));
     item_.scalars.assign(element.properties.size(), 0);
     if (element.name == "vertex") return read_vertices(element);
     return read_faces(element);

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "drivers/common/nearest_word.hpp"
+#include "drivers/common/printable.hpp"
+#include "drivers/common/toml_guard.hpp"
 #include "drivers/recording/text_file.hpp"
 
 namespace pliant {
@@ -56,6 +58,9 @@ class Reader {
     return {ErrorKind::bad_input,
             fmt::format("{}:{}:{}: {}", name_, where.begin.line, where.begin.column, what)};
   }
+  [[nodiscard]] Error at(const TextPlace& where, std::string_view what) const {
+    return {ErrorKind::bad_input, fmt::format("{}:{}:{}: {}", name_, where.line, where.column, what)};
+  }
   [[nodiscard]] Error of_file(std::string_view what) const {
     return {ErrorKind::bad_input, fmt::format("{}: {}", name_, what)};
   }
@@ -66,7 +71,7 @@ class Reader {
     std::vector<std::string_view> names;
     for (const Key& k : keys) names.push_back(k.name);
     if (!allowed_table.empty()) names.push_back(allowed_table);
-    return at(key.source(), fmt::format("unknown key '{}'; nearest known key is '{}'", key.str(),
+    return at(key.source(), fmt::format("unknown key '{}'; nearest known key is '{}'", printable(key.str()),
                                         nearest_word(key.str(), names)));
   }
 
@@ -77,8 +82,10 @@ class Reader {
 
 Result<CameraFile> parse_camera(std::string_view text, std::string_view name) {
   const Reader reader(name);
+  if (const std::optional<TextPlace> stray = stray_character(text))
+    return reader.at(*stray, "not valid TOML: a character beyond ASCII outside quotes");
   const toml::parse_result parsed = toml::parse(text, name);
-  if (!parsed) return reader.at(parsed.error().source(), parsed.error().description());
+  if (!parsed) return reader.at(parsed.error().source(), printable(parsed.error().description()));
 
   CameraFile camera;
   Intrinsics& c = camera.intrinsics;

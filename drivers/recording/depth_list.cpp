@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "drivers/common/printable.hpp"
 #include "drivers/recording/text_file.hpp"
 
 namespace pliant {
@@ -63,13 +64,14 @@ Result<std::vector<DepthListEntry>> parse_depth_list(std::string_view text, std:
     double seconds = 0;
     const auto parsed = std::from_chars(stamp.data(), stamp.data() + stamp.size(), seconds);
     if (parsed.ec != std::errc() || parsed.ptr != stamp.data() + stamp.size())
-      return bad(fmt::format("'{}' is not a number of seconds", stamp.substr(0, 40)));
+      return bad(fmt::format("'{}' is not a number of seconds", printable(stamp, 40)));
     if (!(seconds >= 0 && seconds <= kMaxSeconds))
-      return bad(fmt::format("stamp {} is not within 0 to 1e10 seconds", stamp.substr(0, 40)));
+      return bad(fmt::format("stamp {} is not within 0 to 1e10 seconds", printable(stamp, 40)));
     if (file.size() > kMaxPath || file.find('\0') != std::string_view::npos)
       return bad("the file's name is unusable");
     std::string relative = inside(file, folder);
-    if (relative.empty()) return bad(fmt::format("'{}' is not a file inside the recording", file));
+    if (relative.empty())
+      return bad(fmt::format("'{}' is not a file inside the recording", printable(file, 200)));
     entries.push_back({std::llround(seconds * 1e6), std::move(relative)});
   }
   if (entries.empty()) return Error{ErrorKind::bad_input, fmt::format("{}: lists no frame", name)};

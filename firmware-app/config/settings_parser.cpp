@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "drivers/common/nearest_word.hpp"
+#include "drivers/common/printable.hpp"
+#include "drivers/common/toml_guard.hpp"
 #include "firmware-app/config/settings_table.hpp"
 
 #define TOML_EXCEPTIONS 0
@@ -20,13 +22,6 @@ std::string full_name(std::string_view table, std::string_view key) {
 Error error_at(std::string_view name, const toml::source_region& where, const std::string& what) {
   return {ErrorKind::bad_input,
           fmt::format("{}:{}:{}: {}", name, where.begin.line, where.begin.column, what)};
-}
-
-/// Text of a file in an error line: without control characters, and not the whole file.
-std::string shown(std::string_view text) {
-  std::string out;
-  for (const char c : text.substr(0, 60)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return text.size() > 60 ? out + "..." : out;
 }
 
 const Setting& nearest(std::span<const Setting> settings, std::string_view table, std::string_view key) {
@@ -107,8 +102,8 @@ Outcome assign(const toml::node& node, const toml::source_region& where, std::st
     }
   const Setting& guess = nearest(settings, table, key);
   return error_at(name, where,
-                  fmt::format("unknown key '{}'; the nearest known one is '{}'", shown(full_name(table, key)),
-                              full_name(guess.table, guess.key)));
+                  fmt::format("unknown key '{}'; the nearest known one is '{}'",
+                              printable(full_name(table, key)), full_name(guess.table, guess.key)));
 }
 
 }  // namespace
@@ -116,10 +111,14 @@ Outcome assign(const toml::node& node, const toml::source_region& where, std::st
 Outcome parse_settings(std::string_view text, std::string_view name, std::span<const Setting> settings) {
   if (text.size() > kMaxSettingsText)
     return Error{ErrorKind::bad_input, fmt::format("{} is longer than 1 MB", name)};
+  if (const std::optional<TextPlace> stray = stray_character(text))
+    return Error{ErrorKind::bad_input,
+                 fmt::format("{}:{}:{}: not valid TOML: a character beyond ASCII outside quotes", name,
+                             stray->line, stray->column)};
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed)
     return error_at(name, parsed.error().source(),
-                    fmt::format("not valid TOML: {}", shown(parsed.error().description())));
+                    fmt::format("not valid TOML: {}", printable(parsed.error().description())));
 
   for (const auto& [key, node] : parsed.table()) {
     bool is_table = false;
@@ -128,7 +127,7 @@ Outcome parse_settings(std::string_view text, std::string_view name, std::span<c
       if (is_table)
         return error_at(
             name, node.source(),
-            fmt::format("'{}' must be a table, written [{}]", shown(key.str()), shown(key.str())));
+            fmt::format("'{}' must be a table, written [{}]", printable(key.str()), printable(key.str())));
       if (Outcome done = assign(node, key.source(), name, "", key.str(), settings); !done) return done;
       continue;
     }
