@@ -1,11 +1,12 @@
 // pliant run: the tracker.
 #include <fmt/format.h>
 
-#include <cstring>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
 
+#include "core/simd/cpu.hpp"
 #include "drivers/geometry_files/atomic_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
@@ -55,6 +56,18 @@ Result<Config> merged_config(const RunOptions& options) {
   return config;
 }
 
+/// -1 where unknown.
+std::int64_t frames_to_come(std::int64_t in_source, std::int64_t limit) {
+  if (in_source < 0 || limit < 0) return std::max(in_source, limit);
+  return std::min(in_source, limit);
+}
+
+/// All kernels give the same bytes, so one that this processor has not is no error.
+void warn_of_missing_kernels(Kernels kernels) {
+  if (kernels != Kernels::automatic && kernels != Kernels::scalar && simd_body(kernels) == SimdBody::scalar)
+    print_warning("this processor has not the kernels asked for; the scalar ones run");
+}
+
 int finish(const RunOptions& options, const RunEnd& end, AtomicFile& stats) {
   const RunFigures& figures = end.figures;
   bool failed = end.files_failed;
@@ -89,6 +102,7 @@ int run(const RunOptions& options) {
   Result<ModelFile> model = load_model(config->model, config->source);
   if (!model) return report(model.error());
 
+  warn_of_missing_kernels(options.kernels);
   RunSettings settings;
   settings.source_name = config->source;
   settings.version = PLIANT_VERSION;
@@ -112,7 +126,7 @@ int run(const RunOptions& options) {
   settings.files = {.trajectory = options.trajectory, .points = options.points, .wait_for_disk = true};
   settings.hash = !options.stats.empty();
   LiveLine line;
-  const std::int64_t frame_count = source->source->frame_count();
+  const std::int64_t frame_count = frames_to_come(source->source->frame_count(), options.frames);
   if (line.active())
     settings.progress = [&](const LiveFigures& live) { line.show(status_line(live, frame_count)); };
   settings.warn = [&](const std::string& message) {

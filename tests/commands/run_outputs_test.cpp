@@ -30,6 +30,12 @@ TEST_F(RunOutputs, TracksAndWritesEverything) {
   EXPECT_EQ(stats["dropped"], 0);
   EXPECT_GE(stats["tracked"].get<int>(), 30);
   EXPECT_EQ(stats["output_sha256"].get<std::string>().size(), 64U);
+  // Null in a build with a sanitizer, which brings a heap of its own.
+  if (!stats["heap_calls_after_start"].is_null()) {
+    EXPECT_EQ(stats["heap_calls_after_start"], 0);
+  }
+  EXPECT_GT(stats["workspace_bytes"].get<std::int64_t>(), 100'000);
+  EXPECT_GT(stats["rss_bytes"].get<std::int64_t>(), stats["workspace_bytes"].get<std::int64_t>());
   EXPECT_GT(stats["stages"]["total"]["median_us"].get<double>(), 0);
 
   const auto tracked = stats["tracked"].get<std::size_t>();
@@ -49,6 +55,18 @@ TEST_F(RunOutputs, FilesDoNotChangeWhatIsSaid) {
                 .code,
             0);
   EXPECT_EQ(stats_of(at("a.json"))["output_sha256"], stats_of(at("b.json"))["output_sha256"]);
+}
+
+TEST_F(RunOutputs, EveryKernelGivesTheSame) {
+  std::string expected;
+  for (const char* kernels : {"scalar", "auto", "sse", "avx2", "neon"}) {
+    const Ended ended = run_pliant({"run", "--source", kSource, "--frames", "20", "--lcm-url", "none",
+                                    "--kernels", kernels, "--stats", at("s.json")});
+    EXPECT_EQ(ended.code, 0) << kernels << ended.err;
+    const std::string hash = stats_of(at("s.json"))["output_sha256"];
+    if (expected.empty()) expected = hash;
+    EXPECT_EQ(hash, expected) << kernels;
+  }
 }
 
 TEST_F(RunOutputs, ARecordingGivesTheSameAsItsSource) {
