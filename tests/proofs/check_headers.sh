@@ -3,22 +3,26 @@
 set -euo pipefail
 export LC_ALL=C
 folder=$1
-allowed='algorithm array bit climits cmath compare concepts cstddef cstdint cstdlib cstring initializer_list limits
+allowed=' algorithm array bit climits cmath compare concepts cstddef cstdint cstdlib cstring initializer_list limits
   new numbers span tuple type_traits utility
   arm_neon.h immintrin.h smmintrin.h sys/auxv.h
-  Eigen/Cholesky Eigen/Core Eigen/Eigenvalues Eigen/Geometry Eigen/LU Eigen/QR Eigen/SVD'
+  Eigen/Cholesky Eigen/Core Eigen/Eigenvalues Eigen/Geometry Eigen/LU Eigen/QR Eigen/SVD '
+allowed=${allowed//$'\n'/ }
 
-sources=$(find "$folder" -name '*.hpp' -o -name '*.cpp' | sort)
-[ -n "$sources" ] || { echo "no source in $folder"; exit 2; }
+count=$(find "$folder" -name '*.hpp' -o -name '*.cpp' | wc -l)
+[ "$count" -gt 0 ] || { echo "no source in $folder"; exit 2; }
 status=0
-while IFS=: read -r file line text; do
-  header=$(sed -E 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]([^>"]+)[>"].*/\1/' <<<"$text")
-  case $text in
-    *'"'*) [[ $header == core/* ]] && continue ;;  # its own
-    *) for word in $allowed; do [ "$word" = "$header" ] && continue 2; done ;;
-  esac
-  echo "forbidden: $header in $file:$line"
+pattern='^(.*):([0-9]+):[[:space:]]*#[[:space:]]*include[[:space:]]*([<"])([^>"]+)[>"]'
+while read -r line; do
+  if [[ $line =~ $pattern ]]; then
+    header=${BASH_REMATCH[4]}
+    [[ ${BASH_REMATCH[3]} == '"' && $header == core/* ]] && continue  # its own
+    [[ $allowed == *" $header "* ]] && continue
+    echo "forbidden: $header in ${BASH_REMATCH[1]}:${BASH_REMATCH[2]}"
+  else
+    echo "forbidden: what $line includes cannot be read"
+  fi
   status=1
-done < <(grep -nE '^[[:space:]]*#[[:space:]]*include' $sources /dev/null)
-[ $status -ne 0 ] || echo "only allowed headers in $(wc -w <<<"$sources") sources"
+done < <(grep -rnE --include='*.hpp' --include='*.cpp' '^[[:space:]]*#[[:space:]]*include' "$folder")
+[ $status -ne 0 ] || echo "only allowed headers in $count sources"
 exit $status
