@@ -36,6 +36,23 @@ struct Spread {
   }
 };
 
+/// The weighted rows of region `k` about `centre`: the integer kernel of the step, on its own so that it can
+/// be looked at.
+[[gnu::noinline]] PlaneMoments region_moments(std::span<const Correspondence> all, std::int8_t k,
+                                              const IntPoint& centre, std::int32_t limit) noexcept {
+  PlaneMoments moments;
+  for (const Correspondence& c : all) {
+    if (c.region != k) continue;
+    const std::int32_t w = tukey_weight(c.residual, limit);
+    if (w == 0) continue;
+    const std::int32_t px = c.point.x - centre.x, py = c.point.y - centre.y, pz = c.point.z - centre.z;
+    moments.add({(py * c.nz - pz * c.ny) >> 14, (pz * c.nx - px * c.nz) >> 14, (px * c.ny - py * c.nx) >> 14,
+                 c.nx, c.ny, c.nz},
+                c.residual, w);
+  }
+  return moments;
+}
+
 Matrix6 symmetric(const PlaneMoments& m, const Vector6& scale) noexcept {
   Matrix6 a;
   std::size_t k = 0;
@@ -78,16 +95,7 @@ void align(const Surface& surface, const AlignSettings& settings, const PointSta
     const std::int32_t limit =
         std::clamp((region.scale * 300) >> 6, 3 * noise, std::max(settings.widest, 3 * noise)) * 16;
 
-    PlaneMoments moments;
-    for (const Correspondence& c : all) {
-      if (c.region != static_cast<std::int8_t>(k)) continue;
-      const std::int32_t w = tukey_weight(c.residual, limit);
-      if (w == 0) continue;
-      const std::int32_t px = c.point.x - centre.x, py = c.point.y - centre.y, pz = c.point.z - centre.z;
-      moments.add({(py * c.nz - pz * c.ny) >> 14, (pz * c.nx - px * c.nz) >> 14,
-                   (px * c.ny - py * c.nx) >> 14, c.nx, c.ny, c.nz},
-                  c.residual, w);
-    }
+    const PlaneMoments moments = region_moments(all, static_cast<std::int8_t>(k), centre, limit);
     if (moments.rows < kFewestCorrespondences) continue;
 
     Vector6 unit;

@@ -1,5 +1,6 @@
 #include "core/track/model_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pliant {
@@ -42,10 +43,13 @@ FixedPose::FixedPose(const RigidTransform& pose, const Vector3& centre) noexcept
 }
 
 void Projector::start(const Intrinsics& camera) noexcept {
-  fx_ = rounded(camera.fx * 8);
-  fy_ = rounded(camera.fy * 8);
-  cx_ = rounded(camera.cx * 8) + 4;  // half a pixel, so that the shift rounds
-  cy_ = rounded(camera.cy * 8) + 4;
+  fraction_ = 3;
+  while ((std::max(camera.fx, camera.fy) + 0.5) * (1 << fraction_) > 16384) --fraction_;
+  const double scale = 1 << fraction_;
+  fx_ = rounded(camera.fx * scale);
+  fy_ = rounded(camera.fy * scale);
+  cx_ = rounded((camera.cx + 0.5) * scale);  // half a pixel, so that the shift rounds
+  cy_ = rounded((camera.cy + 0.5) * scale);
   width_ = camera.width;
   height_ = camera.height;
 }

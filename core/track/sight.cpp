@@ -1,0 +1,50 @@
+#include "core/track/sight.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace pliant {
+
+Sighting::Look Sighting::look(std::size_t i, const FixedPose& pose) const noexcept {
+  Look out;
+  out.normal = pose.direction(model_.nx[i], model_.ny[i], model_.nz[i]);
+  out.point = pose.point(model_.x[i], model_.y[i], model_.z[i]);
+  int u = 0, v = 0;
+  if (!faces_camera(out.point, out.normal, kLeastFacing) || !projector_.project(out.point, u, v)) return out;
+  out.facing = true;
+  const std::int32_t limit = tolerance_.deformed(out.point.z);
+  if (try_pixel(u, v, limit, out)) return out;
+  const std::uint16_t centre = surface_.depth(u, v);
+  Look best = out;
+  for (int dv = -1; dv <= 1; ++dv)
+    for (int du = -1; du <= 1; ++du) {
+      Look other = out;
+      if ((du != 0 || dv != 0) && try_pixel(u + du, v + dv, limit, other) &&
+          (best.sight == Sight::none || std::abs(other.residual) < std::abs(best.residual)))
+        best = other;
+    }
+  if (best.sight == Sight::agrees) return best;
+  if (centre == 0) return out;
+  const IntPoint q = surface_.vertex(u, v, centre);
+  out.match = v * surface_.width() + u;
+  const std::int32_t gap = std::min(std::abs(q.z - out.point.z), 8191);
+  out.sight = q.z > out.point.z ? Sight::in_front : Sight::behind;
+  out.residual =
+      gap == 8191 ? (q.z > out.point.z ? -8191 : 8191) : plane_distance(q, out.point, out.normal) >> 4;
+  return out;
+}
+
+bool Sighting::try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept {
+  const std::uint16_t z8 = surface_.depth(u, v);
+  if (z8 == 0 || std::abs(2 * z8 - out.point.z) > 4 * limit) return false;
+  const IntPoint q = surface_.vertex(u, v, z8);
+  const std::int32_t residual = plane_distance(q, out.point, out.normal) >> 4;
+  if (std::abs(residual) > limit) return false;
+  if (!surface_.faces(u, v, Surface::normal_step(z8, spacing_), out.normal)) return false;
+  out.sight = Sight::agrees;
+  out.residual = residual;
+  out.match = v * surface_.width() + u;
+  return true;
+}
+
+}  // namespace pliant
