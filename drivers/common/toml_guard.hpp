@@ -17,29 +17,30 @@ inline std::optional<TextPlace> stray_character(std::string_view text) {
   enum class Where { plain, comment, basic, literal };
   Where where = Where::plain;
   TextPlace place;
+  char before = '\n';  // the last character that is no blank; a string only begins behind some of them
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);  // byte order mark
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
     const bool beyond = static_cast<unsigned char>(c) >= 0x80;
     if (c == '\n') {
       where = Where::plain;
+      before = c;
       ++place.line;
       place.column = 1;
       continue;
     }
     switch (where) {
-      case Where::plain:
+      case Where::plain: {
         if (beyond) return place;
-        // Of """ the first two are an empty string, so that the text of a long string counts as plain.
         if (c == '#') where = Where::comment;
-        if (c == '"') where = Where::basic;
-        if (c == '\'') where = Where::literal;
-        if ((c == '"' || c == '\'') && text.substr(i, 3) == std::string_view(c == '"' ? "\"\"\"" : "'''")) {
-          where = Where::plain;
-          i += 2;
-          place.column += 2;
-        }
+        const bool begins = std::string_view("\n=[{,.").find(before) != std::string_view::npos;
+        // The text of a long string (three quotes) counts as plain.
+        const bool is_long = text.substr(i, 3) == "\"\"\"" || text.substr(i, 3) == "'''";
+        if (begins && !is_long && c == '"') where = Where::basic;
+        if (begins && !is_long && c == '\'') where = Where::literal;
+        if (c != ' ' && c != '\t') before = c;
         break;
+      }
       case Where::comment:
         break;
       case Where::basic:

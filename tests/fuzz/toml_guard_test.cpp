@@ -8,10 +8,11 @@ namespace pliant {
 namespace {
 
 TEST(TomlGuard, LettersBeyondAsciiMayStandInQuotesAndComments) {
-  for (const char* text : {"", "a = 1\n", "a = \"größe\" # größe\nb = 'größe'\n",
-                           "\xEF\xBB\xBF"
-                           "a = 1\n",
-                           "a = \"\\\"ö\\\\\"\n", "# ö", "a = \"\"\"\nx \"ö\" \"\"\"\n"})
+  for (const char* text :
+       {"", "a = 1\n", "a = \"größe\" # größe\nb = 'größe'\n",
+        "\xEF\xBB\xBF"
+        "a = 1\n",
+        "a = \"\\\"ö\\\\\"\n", "# ö", "a = [\n  \"ö\", 'ö',\n{x = \"ö\", \"ö\".\"ö\" = 1}]\n[\"ö\"]\n"})
     EXPECT_FALSE(stray_character(text)) << text;
 }
 
@@ -26,6 +27,7 @@ TEST(TomlGuard, NamesThePlaceOfOthers) {
   EXPECT_EQ(at("# ö\n\na = 'x' ö"), std::pair(std::size_t{3}, std::size_t{9}));
   EXPECT_EQ(at("a = \"not closed\nö"), std::pair(std::size_t{2}, std::size_t{1}));
   EXPECT_EQ(at("a = \"\"\"\\\n ö\"\"\""), std::pair(std::size_t{2}, std::size_t{2}));
+  EXPECT_EQ(at("a = 19x\"ö\""), std::pair(std::size_t{1}, std::size_t{9}));  // a quote inside a word
   EXPECT_EQ(at("a = \"\\\\\"ö"), std::pair(std::size_t{1}, std::size_t{9}));
 }
 

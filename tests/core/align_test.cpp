@@ -1,0 +1,135 @@
+#include "core/track/align.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/track_scene.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::degrees_between;
+using synthetic::Picture;
+using synthetic::pose_at;
+using synthetic::TrackScene;
+using synthetic::usual_pose;
+
+class Align : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
+  static void TearDownTestSuite() { shared_.reset(); }
+  void SetUp() override { scene().points.reset(); }
+  static TrackScene& scene() { return *shared_; }
+
+  static RigidTransform moved(const RigidTransform& pose, double metres, double radians, unsigned which) {
+    const Vector3 axis(which % 3 == 0 ? 1 : 0.3, which % 3 == 1 ? 1 : -0.2, which % 3 == 2 ? 1 : 0.1);
+    return {synthetic::turn(axis, radians) * pose.rotation, pose.translation + metres * axis.normalized()};
+  }
+  /// How far off the truth: at the centre, millimetres.
+  static double millimetres(const RigidTransform& pose) {
+    const Vector3 centre = scene().tables.centre;
+    return (pose * centre - usual_pose() * centre).norm() * 1000;
+  }
+
+ private:
+  static std::unique_ptr<TrackScene> shared_;
+};
+std::unique_ptr<TrackScene> Align::shared_;
+
+TEST_F(Align, FindsTheTruePoseFromAFramesMotionAway) {
+  scene().see_body(usual_pose());
+  for (unsigned which = 0; which < 6; ++which) {
+    scene().place(moved(usual_pose(), which < 3 ? 0.012 : -0.012, which % 2 == 0 ? 0.07 : -0.07, which));
+    scene().align_rounds(10, 40);
+    EXPECT_LT(degrees_between(scene().regions[0].pose.rotation, usual_pose().rotation), 0.25) << which;
+    EXPECT_LT(millimetres(scene().regions[0].pose), 0.5) << which;
+    EXPECT_LT(scene().regions[0].rms, 0.001);
+  }
+}
+
+TEST_F(Align, FindsItUnderNoise) {
+  scene().see_body(usual_pose(), 0.0015);
+  scene().place(moved(usual_pose(), 0.01, 0.05, 1));
+  scene().align_rounds(10, 40);
+  EXPECT_LT(degrees_between(scene().regions[0].pose.rotation, usual_pose().rotation), 0.4);
+  EXPECT_LT(millimetres(scene().regions[0].pose), 0.8);
+}
+
+TEST_F(Align, IsNotDraggedByADentOrAnOccluder) {
+  const RigidTransform pose = usual_pose();
+  Picture picture(scene().camera);
+  // a quarter of the surface stands out by up to 2 cm
+  picture.draw(scene().mesh, pose, [](const Vector3& p) {
+    const double reach = std::max(0.0, p.x() - 0.04);
+    return Vector3(p * (1 + std::min(0.15, 4 * reach)));
+  });
+  picture.wall(1.6);
+  picture.block(150, 150, 200, 240, 0.55);  // a hand
+  scene().see(picture);
+  scene().place(moved(pose, 0.006, 0.03, 2));
+  scene().align_rounds(12, 30);
+  EXPECT_LT(degrees_between(scene().regions[0].pose.rotation, pose.rotation), 1.0);
+  EXPECT_LT(millimetres(scene().regions[0].pose), 2.0);
+}
+
+TEST_F(Align, LeavesARegionWithTooFewReadingsAlone) {
+  scene().see_body(usual_pose());
+  const RigidTransform off = moved(usual_pose(), 0.01, 0.05, 0);
+  scene().place(off);
+  AssociateSettings settings;
+  settings.points = 40;  // fewer than kFewestCorrespondences of these face the camera
+  settings.gate = 40 * kUnitsPerMillimetre;
+  associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
+  ASSERT_LT(scene().points.correspondence_count, kFewestCorrespondences);
+  align(scene().surface, {}, scene().points, scene().regions);
+  EXPECT_EQ((scene().regions[0].pose.rotation - off.rotation).norm(), 0.0);
+  EXPECT_EQ((scene().regions[0].pose.translation - off.translation).norm(), 0.0);
+}
+
+TEST_F(Align, MovesOnlyTheRegionAskedFor) {
+  scene().see_body(usual_pose());
+  const RigidTransform off = moved(usual_pose(), 0.004, 0.02, 0);
+  scene().place(off);
+  scene().regions[1] = scene().regions[0];
+  for (std::size_t i = 0; i < scene().tables.size; i += 2) scene().points.home[i] = 1;
+  AssociateSettings settings;
+  settings.points = scene().tables.size;
+  settings.gate = 20 * kUnitsPerMillimetre;
+  associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
+  AlignSettings align_settings;
+  align_settings.widest = 20 * kUnitsPerMillimetre;
+  align_settings.only_region = 1;
+  align(scene().surface, align_settings, scene().points, scene().regions);
+  EXPECT_EQ((scene().regions[0].pose.translation - off.translation).norm(), 0.0);
+  EXPECT_GT((scene().regions[1].pose.translation - off.translation).norm(), 0.0005);
+}
+
+TEST_F(Align, KeepsToThePredictionWhereTheSurfaceSaysNothing) {
+  // A plane fixes neither its own turning nor its sliding.
+  Geometry plane;
+  constexpr int kSide = 40;
+  for (int r = 0; r <= kSide; ++r)
+    for (int c = 0; c <= kSide; ++c)
+      plane.vertices.push_back(
+          {0.2F * static_cast<float>(c) / kSide - 0.1F, 0.2F * static_cast<float>(r) / kSide - 0.1F, 0});
+  for (int r = 0; r < kSide; ++r)
+    for (int c = 0; c < kSide; ++c) {
+      const auto a = static_cast<std::uint32_t>(r * (kSide + 1) + c);
+      plane.triangles.push_back({a, a + kSide + 2, a + 1});
+      plane.triangles.push_back({a, a + kSide + 1, a + kSide + 2});
+    }
+  TrackScene flat(plane);
+  const RigidTransform pose = pose_at({0, 0, 0.7});
+  Picture picture(flat.camera);
+  picture.wall(0.705);  // 5 mm behind
+  flat.see(picture);
+  flat.place(pose);
+  flat.align_rounds(6, 20);
+  const RigidTransform& found = flat.regions[0].pose;
+  EXPECT_NEAR(found.translation.z(), 0.705, 0.0006);
+  EXPECT_NEAR(found.translation.x(), 0, 0.001);
+  EXPECT_NEAR(found.translation.y(), 0, 0.001);
+  EXPECT_LT(degrees_between(found.rotation, pose.rotation), 0.5);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,140 @@
+#include "core/track/associate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "tests/core/track_scene.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::Picture;
+using synthetic::TrackScene;
+using synthetic::usual_pose;
+
+/// One scene for all: it is not changed but by what a test sets first.
+class Associate : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
+  static void TearDownTestSuite() { shared_.reset(); }
+  void SetUp() override {
+    scene().points.reset();
+    scene().place(usual_pose());
+    scene().see_body(usual_pose());
+  }
+  static TrackScene& scene() { return *shared_; }
+
+  std::size_t run(std::int32_t gate, std::size_t most = SIZE_MAX, bool with_deformed = false,
+                  std::int8_t only = -1) {
+    AssociateSettings settings;
+    settings.points = most;
+    settings.gate = gate;
+    settings.with_deformed = with_deformed;
+    settings.only_region = only;
+    associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
+    return scene().points.correspondence_count;
+  }
+
+ private:
+  static std::unique_ptr<TrackScene> shared_;
+};
+std::unique_ptr<TrackScene> Associate::shared_;
+
+TEST_F(Associate, FindsTheVisibleSurfaceAtTheTruePose) {
+  const std::size_t count = run(20 * kUnitsPerMillimetre);
+  EXPECT_GT(count, scene().tables.size / 5);
+  EXPECT_LT(count, scene().tables.size * 6 / 10);
+  double square = 0;
+  for (const Correspondence& c : scene().points.correspondences.first(count)) {
+    square += (c.residual / 256.0) * (c.residual / 256.0);
+    // where double precision puts the point, and its normal towards the camera
+    const Vector3 p = usual_pose() * scene().rest(c.index) * kUnitsPerMetre;
+    ASSERT_LT((p - Vector3(c.point.x, c.point.y, c.point.z)).norm(), 3);
+    ASSERT_LT(p.dot(Vector3(c.nx, c.ny, c.nz)), 0);
+    ASSERT_EQ(c.region, 0);
+  }
+  EXPECT_LT(std::sqrt(square / static_cast<double>(count)), 1.2);  // millimetres, the picture's own rounding
+}
+
+TEST_F(Associate, LooksAtAPrefixInTheModelsOrder) {
+  const std::size_t all = run(20 * kUnitsPerMillimetre);
+  const std::size_t some = run(20 * kUnitsPerMillimetre, 500);
+  EXPECT_LT(some, all);
+  EXPECT_GT(some, 50U);
+  for (std::size_t i = 0; i < some; ++i) {
+    EXPECT_LT(scene().points.correspondences[i].index, 500);
+    if (i > 0)
+      EXPECT_GT(scene().points.correspondences[i].index, scene().points.correspondences[i - 1].index);
+  }
+}
+
+TEST_F(Associate, TakesNothingBeyondTheGate) {
+  RigidTransform off = usual_pose();
+  off.translation.z() += 0.015;
+  scene().place(off);
+  EXPECT_GT(run(30 * kUnitsPerMillimetre), scene().tables.size / 5);
+  const std::size_t few = run(5 * kUnitsPerMillimetre);
+  EXPECT_LT(few, scene().tables.size / 20);
+  for (const Correspondence& c : scene().points.correspondences.first(few))
+    EXPECT_LE(std::abs(c.residual), 5 * 256);
+}
+
+TEST_F(Associate, DoesNotMatchWhatHidesTheObject) {
+  const std::size_t free_count = run(20 * kUnitsPerMillimetre);
+  Picture picture(scene().camera);
+  picture.draw(scene().mesh, usual_pose());
+  picture.wall(1.6);
+  picture.block(0, 0, 165, 240, 0.5);  // the left half
+  scene().see(picture);
+  const std::size_t count = run(20 * kUnitsPerMillimetre);
+  EXPECT_LT(count, free_count * 8 / 10);
+  EXPECT_GT(count, free_count / 10);
+  for (const Correspondence& c : scene().points.correspondences.first(count)) EXPECT_GT(c.point.z, 9000);
+}
+
+TEST_F(Associate, LeavesOutDeformedPointsAndOtherRegions) {
+  const std::size_t all = run(20 * kUnitsPerMillimetre);
+  for (std::size_t i = 0; i < scene().tables.size; i += 2) scene().points.evidence[i] = kEvidenceDeformed;
+  const std::size_t half = run(20 * kUnitsPerMillimetre);
+  EXPECT_LT(half, all * 6 / 10);
+  EXPECT_EQ(run(20 * kUnitsPerMillimetre, SIZE_MAX, true), all);
+  scene().regions[1] = scene().regions[0];
+  for (std::size_t i = 0; i < 600; ++i) scene().points.home[i] = 1;
+  const std::size_t both = run(20 * kUnitsPerMillimetre, SIZE_MAX, true);
+  EXPECT_EQ(both, all);
+  const std::size_t base = run(20 * kUnitsPerMillimetre, SIZE_MAX, true, 0);
+  const std::size_t part = run(20 * kUnitsPerMillimetre, SIZE_MAX, true, 1);
+  EXPECT_EQ(base + part, all);
+  for (const Correspondence& c : scene().points.correspondences.first(part)) EXPECT_EQ(c.region, 1);
+}
+
+TEST_F(Associate, FindsNothingInAnEmptyPictureOrOutside) {
+  Picture nothing(scene().camera);
+  scene().see(nothing);
+  EXPECT_EQ(run(8191), 0U);
+  scene().see_body(usual_pose());
+  for (const Vector3& where :
+       {Vector3(0, 0, -0.7), Vector3(5, 0, 0.7), Vector3(0, 0, 50), Vector3(0, 0, 0)}) {
+    scene().place({usual_pose().rotation, where});
+    EXPECT_EQ(run(8191), 0U);
+  }
+}
+
+TEST(PlaneDistance, IsSignedAlongTheNormal) {
+  const IntPoint point{100, -200, 16000}, towards{0, 0, -16384};
+  EXPECT_EQ(plane_distance({100, -200, 15984}, point, towards), 256);  // 1 mm before
+  EXPECT_EQ(plane_distance({500, 700, 16016}, point, towards), -256);  // 1 mm behind, wherever beside
+  EXPECT_EQ(plane_distance({8291, 7991, 24191}, point, {9459, 9459, 9459}), 226'980);
+}
+
+TEST(FacesCamera, ComparesWithTheLineOfSight) {
+  EXPECT_TRUE(faces_camera({0, 0, 16000}, {0, 0, -16384}, 4240));
+  EXPECT_FALSE(faces_camera({0, 0, 16000}, {0, 0, 16384}, 4240));
+  EXPECT_FALSE(faces_camera({0, 0, 16000}, {16384, 0, 0}, 0));
+  EXPECT_TRUE(faces_camera({-16000, 0, 16000}, {16384, 0, 0}, 4240));  // seen from the side
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,169 @@
+#include "core/track/label.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/track/sight.hpp"
+#include "tests/core/track_scene.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::Picture;
+using synthetic::TrackScene;
+using synthetic::usual_pose;
+
+class Label : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
+  static void TearDownTestSuite() { shared_.reset(); }
+  void SetUp() override {
+    scene().points.reset();
+    scene().place(usual_pose());
+  }
+  static TrackScene& scene() { return *shared_; }
+  std::map<int, std::size_t> labels() {
+    std::map<int, std::size_t> count;
+    for (const std::int8_t l : scene().points.label) ++count[l];
+    return count;
+  }
+  SightCounts frames(int count) {
+    SightCounts counts;
+    for (int i = 0; i < count; ++i) counts = scene().label_now();
+    return counts;
+  }
+
+ private:
+  static std::unique_ptr<TrackScene> shared_;
+};
+std::unique_ptr<TrackScene> Label::shared_;
+
+TEST_F(Label, AllThatIsSeenAgreesAtTheTruePose) {
+  scene().see_body(usual_pose());
+  const SightCounts counts = frames(3);
+  EXPECT_GT(counts.facing, scene().tables.size / 4);
+  EXPECT_GT(counts.agree, counts.facing * 9 / 10);
+  EXPECT_LT(counts.in_front + counts.behind, counts.facing / 12);
+  const auto count = labels();
+  EXPECT_EQ(count.count(kDeformed) != 0 ? count.at(kDeformed) : 0, 0U);
+  EXPECT_GE(count.at(0), counts.agree * 95 / 100);
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    if (scene().points.label[i] < 0) {
+      ASSERT_EQ(scene().points.match[i], -1);
+      continue;
+    }
+    const int u = scene().points.match[i] % scene().camera.width,
+              v = scene().points.match[i] / scene().camera.width;
+    const std::uint16_t z8 = scene().surface.depth(u, v);
+    ASSERT_GT(z8, 0);
+    const IntPoint q = scene().surface.vertex(u, v, z8), p = scene().points.position[i];
+    ASSERT_LT(std::abs(q.x - p.x) + std::abs(q.y - p.y), 30 * kUnitsPerMillimetre);
+  }
+}
+
+TEST_F(Label, WhatStandsBehindSomethingElseIsNotObserved) {
+  Picture picture(scene().camera);
+  picture.draw(scene().mesh, usual_pose());
+  picture.wall(1.6);
+  picture.block(0, 0, 160, 240, 0.4);  // a board before the left half
+  scene().see(picture);
+  const SightCounts counts = frames(6);
+  EXPECT_GT(counts.behind, counts.facing / 8);
+  EXPECT_LT(counts.bulged, counts.behind / 8);
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    int u = 0, v = 0;
+    if (!scene().projector.project(scene().points.position[i], u, v) || u > 156) continue;
+    ASSERT_EQ(scene().points.label[i], kNotObserved) << i;
+  }
+  EXPECT_GT(labels().at(0), counts.facing / 4);
+}
+
+TEST_F(Label, WhatTheCameraSeesThroughIsDeformedAfterClearEvidence) {
+  Picture picture(scene().camera);
+  // the half beyond x = 3 cm caves in by up to 4 cm
+  picture.draw(scene().mesh, usual_pose(), [](const Vector3& p) {
+    return Vector3(p * (1 - 0.35 * std::clamp((p.x() - 0.03) * 50, 0.0, 1.0)));
+  });
+  picture.wall(1.6);
+  scene().see(picture);
+  const SightCounts first = frames(1);
+  EXPECT_GT(first.in_front, first.facing / 12);
+  EXPECT_EQ(labels().count(kDeformed), 0U);  // one frame is no evidence
+  frames(3);
+  const auto count = labels();
+  ASSERT_EQ(count.count(kDeformed), 1U);
+  EXPECT_GT(count.at(kDeformed), first.in_front / 2);
+  for (std::size_t i = 0; i < scene().tables.size; ++i)
+    if (scene().points.label[i] == kDeformed) ASSERT_GT(scene().rest(i).x(), 0.015) << i;
+  // and back again
+  scene().see_body(usual_pose());
+  frames(8);
+  EXPECT_EQ(labels().count(kDeformed), 0U);
+}
+
+TEST_F(Label, NothingIsObservedInAnEmptyPicture) {
+  Picture picture(scene().camera);
+  scene().see(picture);
+  const SightCounts counts = frames(10);
+  EXPECT_GT(counts.facing, 0U);
+  EXPECT_EQ(counts.agree + counts.in_front + counts.behind, 0U);
+  EXPECT_EQ(labels().at(kNotObserved), scene().tables.size);
+}
+
+TEST_F(Label, APointGoesOverToTheRegionThatExplainsIt) {
+  // Region 1 has the true pose, the base is 2 cm off: points at the border go over.
+  scene().see_body(usual_pose());
+  scene().regions[1] = scene().regions[0];
+  scene().regions[1].parent = 0;
+  scene().regions[0].pose.translation.z() += 0.02;
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    scene().points.home[i] = scene().rest(i).x() > 0.05 ? 1 : 0;
+    before += scene().points.home[i] == 1 ? 1U : 0U;
+  }
+  frames(1);
+  std::size_t once = 0, later = 0;
+  for (const std::int8_t home : scene().points.home) once += home == 1 ? 1U : 0U;
+  EXPECT_LE(once, before + 5);  // temporal evidence first
+  frames(12);
+  for (const std::int8_t home : scene().points.home) later += home == 1 ? 1U : 0U;
+  EXPECT_GT(later, before + 50);
+}
+
+TEST_F(Label, HomesOfUnseenPointsFollowTheSurface) {
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    const bool right = scene().rest(i).x() > 0;
+    scene().points.sight[i] = std::abs(scene().rest(i).x()) > 0.09 ? Sight::agrees : Sight::none;
+    scene().points.home[i] = scene().points.sight[i] == Sight::agrees && right ? 3 : 0;
+  }
+  carry_homes_to_unseen(scene().tables, scene().points);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    if (std::abs(scene().rest(i).x()) < 0.02) continue;
+    wrong += (scene().points.home[i] == 3) != (scene().rest(i).x() > 0) ? 1U : 0U;
+  }
+  EXPECT_LT(wrong, scene().tables.size / 50);
+}
+
+TEST_F(Label, ALookTellsFrontFromBehind) {
+  Picture picture(scene().camera);
+  picture.wall(0.9);
+  scene().see(picture);
+  const Sighting sighting(scene().tables, scene().surface, scene().projector, scene().tolerance);
+  for (const double z : {0.7, 1.1}) {
+    const FixedPose pose({usual_pose().rotation, {0, 0, z}}, scene().tables.centre);
+    std::size_t facing = 0;
+    for (std::size_t i = 0; i < scene().tables.size; ++i) {
+      const Sighting::Look look = sighting.look(i, pose);
+      if (!look.facing) continue;
+      ++facing;
+      ASSERT_EQ(look.sight, z < 0.9 ? Sight::in_front : Sight::behind);
+      ASSERT_EQ(look.residual > 0, z > 0.9);
+    }
+    EXPECT_GT(facing, 500U);
+  }
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,97 @@
+// A model, a camera and all the tables of the tracking steps, for tests of single steps.
+#pragma once
+
+#include <memory>
+
+#include "core/track/align.hpp"
+#include "core/track/associate.hpp"
+#include "core/track/label.hpp"
+#include "core/track/patches.hpp"
+#include "core/track/predict.hpp"
+#include "core/track/track_state.hpp"
+#include "tests/core/synthetic.hpp"
+
+namespace pliant::synthetic {
+
+class TrackScene {
+ public:
+  explicit TrackScene(const Geometry& body, double spacing = 0.006, const Intrinsics& lens = small_camera())
+      : mesh(body), camera(lens), file_(model_of(body, spacing)), model(file_.view()) {
+    Workspace measure;
+    lay_out(measure);
+    memory_ = std::make_unique<OwnedWorkspace>(measure.used());
+    lay_out(memory_->get());
+    tables.start(model);
+    surface.start(camera, SensorDescription());
+    projector.start(camera);
+    tolerance = {&surface, tables.spacing};
+    patches.start(tables, points.queue);
+    points.reset();
+  }
+  TrackScene(const TrackScene&) = delete;
+  TrackScene& operator=(const TrackScene&) = delete;
+
+  /// The base region alone, at `pose`.
+  void place(const RigidTransform& pose) {
+    regions = RegionSet();
+    regions[0].alive = true;
+    regions[0].pose = regions[0].last_pose = regions[0].predicted = pose;
+  }
+  void see(Picture& picture) { surface.build(picture.frame(), {0, 0, camera.width, camera.height}); }
+  /// The mesh at `pose` before a wall, seen by the surface.
+  void see_body(const RigidTransform& pose, double noise = 0) {
+    Picture picture(camera);
+    picture.draw(mesh, pose);
+    picture.wall(1.6);
+    if (noise > 0) picture.shake(noise, 11);
+    see(picture);
+  }
+  /// `rounds` of association and alignment, the gate (millimetres) shrinking by a fifth each.
+  void align_rounds(int rounds, int gate) {
+    for (int i = 0; i < rounds; ++i, gate = std::max(gate * 4 / 5, 8)) {
+      AssociateSettings associate_settings;
+      associate_settings.points = tables.size;
+      associate_settings.gate = gate * kUnitsPerMillimetre;
+      associate(tables, surface, projector, regions, associate_settings, points);
+      AlignSettings align_settings;
+      align_settings.widest = gate * kUnitsPerMillimetre;
+      align(surface, align_settings, points, regions);
+    }
+  }
+  SightCounts label_now() { return label(tables, surface, projector, regions, tolerance, points); }
+  [[nodiscard]] Vector3 rest(std::size_t i) const {
+    const Point3f& p = model.positions()[i];
+    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+  }
+
+  Geometry mesh;
+  Intrinsics camera;
+
+ private:
+  ModelFile file_;
+  std::unique_ptr<OwnedWorkspace> memory_;
+
+  void lay_out(Workspace& workspace) {
+    tables.lay_out(workspace, model.size());
+    surface.lay_out(workspace, camera);
+    patches.lay_out(workspace, model.size());
+    points.lay_out(workspace, model.size());
+  }
+
+ public:
+  ModelView model;
+  ModelTables tables;
+  Surface surface;
+  Projector projector;
+  Tolerance tolerance;
+  PatchTables patches;
+  PointState points;
+  RegionSet regions;
+};
+
+/// Where the bodies stand in these tests.
+inline RigidTransform usual_pose() {
+  return pose_at({0.02, -0.01, 0.75}, {1, 2, 0.5}, 0.6);
+}
+
+}  // namespace pliant::synthetic
