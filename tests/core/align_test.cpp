@@ -54,23 +54,6 @@ TEST_F(Align, FindsItUnderNoise) {
   EXPECT_LT(millimetres(scene().regions[0].pose), 0.8);
 }
 
-TEST_F(Align, IsNotDraggedByADentOrAnOccluder) {
-  const RigidTransform pose = usual_pose();
-  Picture picture(scene().camera);
-  // a quarter of the surface stands out by up to 2 cm
-  picture.draw(scene().mesh, pose, [](const Vector3& p) {
-    const double reach = std::max(0.0, p.x() - 0.04);
-    return Vector3(p * (1 + std::min(0.15, 4 * reach)));
-  });
-  picture.wall(1.6);
-  picture.block(150, 150, 200, 240, 0.55);  // a hand
-  scene().see(picture);
-  scene().place(moved(pose, 0.006, 0.03, 2));
-  scene().align_rounds(12, 30);
-  EXPECT_LT(degrees_between(scene().regions[0].pose.rotation, pose.rotation), 1.0);
-  EXPECT_LT(millimetres(scene().regions[0].pose), 2.0);
-}
-
 TEST_F(Align, LeavesARegionWithTooFewReadingsAlone) {
   scene().see_body(usual_pose());
   const RigidTransform off = moved(usual_pose(), 0.01, 0.05, 0);

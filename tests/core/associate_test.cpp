@@ -65,8 +65,9 @@ TEST_F(Associate, LooksAtAPrefixInTheModelsOrder) {
   EXPECT_GT(some, 50U);
   for (std::size_t i = 0; i < some; ++i) {
     EXPECT_LT(scene().points.correspondences[i].index, 500);
-    if (i > 0)
+    if (i > 0) {
       EXPECT_GT(scene().points.correspondences[i].index, scene().points.correspondences[i - 1].index);
+    }
   }
 }
 
@@ -126,7 +127,7 @@ TEST(PlaneDistance, IsSignedAlongTheNormal) {
   const IntPoint point{100, -200, 16000}, towards{0, 0, -16384};
   EXPECT_EQ(plane_distance({100, -200, 15984}, point, towards), 256);  // 1 mm before
   EXPECT_EQ(plane_distance({500, 700, 16016}, point, towards), -256);  // 1 mm behind, wherever beside
-  EXPECT_EQ(plane_distance({8291, 7991, 24191}, point, {9459, 9459, 9459}), 226'980);
+  EXPECT_EQ(plane_distance({8291, 7991, 24191}, point, {9459, 9459, 9459}), 226'988);
 }
 
 TEST(FacesCamera, ComparesWithTheLineOfSight) {

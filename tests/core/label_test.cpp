@@ -95,7 +95,9 @@ TEST_F(Label, WhatTheCameraSeesThroughIsDeformedAfterClearEvidence) {
   ASSERT_EQ(count.count(kDeformed), 1U);
   EXPECT_GT(count.at(kDeformed), first.in_front / 2);
   for (std::size_t i = 0; i < scene().tables.size; ++i)
-    if (scene().points.label[i] == kDeformed) ASSERT_GT(scene().rest(i).x(), 0.015) << i;
+    if (scene().points.label[i] == kDeformed) {
+      ASSERT_GT(scene().rest(i).x(), 0.015) << i;
+    }
   // and back again
   scene().see_body(usual_pose());
   frames(8);

@@ -97,7 +97,9 @@ TEST_F(RadiusSearch, GivesNoMatchWithoutReadings) {
     if (scene_.points.label[i] >= 0) scene_.points.label[i] = kNotObserved;
   search();
   for (std::size_t i = 0; i < scene_.tables.size; ++i)
-    if (scene_.points.label[i] == kDeformed) ASSERT_EQ(scene_.points.match[i], -1);
+    if (scene_.points.label[i] == kDeformed) {
+      ASSERT_EQ(scene_.points.match[i], -1);
+    }
 }
 
 }  // namespace
