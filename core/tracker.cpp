@@ -13,7 +13,7 @@ namespace {
 constexpr int kFramesToReturn = 5;
 
 /// Work of the detector in one frame, in its units of about 1000 instructions.
-constexpr std::int64_t kSearchBudget = 60000;
+constexpr std::int64_t kSearchBudget = 120000;
 
 struct alignas(Workspace::kAlignment) StateStorage {
   std::byte bytes[sizeof(TrackerState)];
