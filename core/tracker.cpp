@@ -125,7 +125,7 @@ const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
     done(s, Stage::deform);
     tracked = judge(s);
     s.frames_failed = tracked ? 0 : s.frames_failed + 1;
-    if (!tracked) s.regions = s.before;
+    if (!tracked) return_to_last_frame(s);
     if (s.frames_failed > kFramesToReturn) s.following = false;
   } else {
     tracked = search(s, frame);

@@ -59,6 +59,9 @@ void match_deformed(TrackerState& s) noexcept;
 /// True when what is seen bears the pose out. Sets confidence.
 [[nodiscard]] bool judge(TrackerState& s) noexcept;
 
+/// Forgets what a failed frame did to the regions; points whose region is gone with it go back to the base.
+void return_to_last_frame(TrackerState& s) noexcept;
+
 /// Tries to take the object up at `pose` in this frame; true when what is seen bears it out.
 [[nodiscard]] bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept;
 

@@ -146,6 +146,12 @@ bool judge(TrackerState& s) noexcept {
   return agree >= fewest && s.confidence >= 0.4 && seen_through <= agree + deformed_matched / 2;
 }
 
+void return_to_last_frame(TrackerState& s) noexcept {
+  s.regions = s.before;
+  for (std::size_t i = 0; i < s.tables.size; ++i)
+    if (!s.regions[static_cast<std::size_t>(s.points.home[i])].alive) s.points.home[i] = 0;
+}
+
 bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept {
   s.points.reset();
   s.regions = RegionSet();
