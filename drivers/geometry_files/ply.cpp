@@ -135,8 +135,8 @@ class PlyReader {
         return stream_.here(fmt::format("element 'vertex' has no property '{}'", names[k]));
     }
     const bool normals = column[3] >= 0 && column[4] >= 0 && column[5] >= 0;
-    geometry_.vertices.reserve(element.count);
-    if (normals) geometry_.normals.reserve(element.count);
+    geometry_.vertices.reserve(static_cast<std::size_t>(element.count));
+    if (normals) geometry_.normals.reserve(static_cast<std::size_t>(element.count));
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (Outcome read = read_item(stream_, element, i, -1, item_); !read) return read;
       const auto at = [&](std::size_t k) {

@@ -64,7 +64,7 @@ Result<Geometry> parse_binary(std::span<const std::byte> data, std::string_view 
                     count, room));
   Geometry geometry;
   Welder welder(geometry);
-  geometry.triangles.reserve(count);
+  geometry.triangles.reserve(static_cast<std::size_t>(count));
   for (std::uint64_t i = 0; i < count; ++i) {
     std::array<std::uint32_t, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) {
