@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pliant {
 
@@ -43,13 +44,13 @@ FixedPose::FixedPose(const RigidTransform& pose, const Vector3& centre) noexcept
 }
 
 void Projector::start(const Intrinsics& camera) noexcept {
-  fraction_ = 3;
-  while ((std::max(camera.fx, camera.fy) + 0.5) * (1 << fraction_) > 16384) --fraction_;
-  const double scale = 1 << fraction_;
-  fx_ = rounded(camera.fx * scale);
-  fy_ = rounded(camera.fy * scale);
-  cx_ = rounded((camera.cx + 0.5) * scale);  // half a pixel, so that the shift rounds
-  cy_ = rounded((camera.cy + 0.5) * scale);
+  fx_ = rounded(camera.fx * 8);
+  fy_ = rounded(camera.fy * 8);
+  cx_ = rounded(camera.cx * 8) + 4;  // half a pixel, so that the shift rounds
+  cy_ = rounded(camera.cy * 8) + 4;
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  widest_x_ = std::min(kFarthest, kMost / fx_);
+  widest_y_ = std::min(kFarthest, kMost / fy_);
   width_ = camera.width;
   height_ = camera.height;
 }

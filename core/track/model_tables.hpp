@@ -47,31 +47,30 @@ struct FixedPose {
   }
 };
 
-/// Where points fall in the picture, in integers: focal lengths and centre in 1/8 pixel, coarser for focal
-/// lengths above 2048 pixels.
+/// Where points fall in the picture, in integers: focal lengths and centre in 1/8 pixel.
 class Projector {
  public:
   void start(const Intrinsics& camera) noexcept;
   /// Nearest pixel. False behind or nearer than 50 mm, or farther than 8 m, or outside the picture.
-  /// Overflow bound: |x| <= 128000 and scaled focal lengths <= 2^14, their product below 2^31.
+  /// Overflow bound: |x| <= widest_x, so that its product with the focal length stays below 2^31. What is
+  /// farther aside lies more than 2000 pixels from the principal point.
   [[nodiscard]] bool project(const IntPoint& p, int& u, int& v) const noexcept {
-    if (p.z < 50 * kUnitsPerMillimetre || p.z > kFarthest || p.x > kFarthest || p.x < -kFarthest ||
-        p.y > kFarthest || p.y < -kFarthest)
+    if (p.z < 50 * kUnitsPerMillimetre || p.z > kFarthest || p.x > widest_x_ || p.x < -widest_x_ ||
+        p.y > widest_y_ || p.y < -widest_y_)
       return false;
-    u = (p.x * fx_ / p.z + cx_) >> fraction_;
-    v = (p.y * fy_ / p.z + cy_) >> fraction_;
+    u = (p.x * fx_ / p.z + cx_) >> 3;
+    v = (p.y * fy_ / p.z + cy_) >> 3;
     return u >= 0 && u < width_ && v >= 0 && v < height_;
   }
   /// Pixels that `length` (1/16 mm) spans at depth z (1/16 mm), rounded up.
   [[nodiscard]] int pixels(std::int32_t length, std::int32_t z) const noexcept {
-    return static_cast<int>(
-        static_cast<std::int64_t>(length) * fx_ / (static_cast<std::int64_t>(z) << fraction_) + 1);
+    return static_cast<int>(static_cast<std::int64_t>(length) * fx_ / (8 * static_cast<std::int64_t>(z)) + 1);
   }
 
  private:
   static constexpr std::int32_t kFarthest = 128000;  // 8 m
   std::int32_t fx_ = 0, fy_ = 0, cx_ = 0, cy_ = 0;
-  int fraction_ = 3;  // bits below the pixel
+  std::int32_t widest_x_ = 0, widest_y_ = 0;
   int width_ = 0, height_ = 0;
 };
 

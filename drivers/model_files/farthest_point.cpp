@@ -70,11 +70,11 @@ class Buckets {
     Eigen::Index axis = 0;
     (bucket.highest - bucket.lowest).maxCoeff(&axis);
     const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(members_.begin() + begin, members_.begin() + middle, members_.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       const double x = points_[a](axis), y = points_[b](axis);
-                       return x < y || (x == y && a < b);
-                     });
+    const auto place = [&](std::uint32_t m) { return members_.begin() + static_cast<std::ptrdiff_t>(m); };
+    std::nth_element(place(begin), place(middle), place(end), [&](std::uint32_t a, std::uint32_t b) {
+      const double x = points_[a](axis), y = points_[b](axis);
+      return x < y || (x == y && a < b);
+    });
     split(begin, middle);
     split(middle, end);
   }
