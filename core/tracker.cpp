@@ -112,12 +112,15 @@ const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
   bool tracked = false;
   if (s.following) {
     s.before = s.regions;
+    s.patches_before = s.warp.pose;
     predict_regions(s);
     done(s, Stage::predict);
     observe_surface(s, frame);  // vertices and normals of the predicted window
     done(s, Stage::surface);
     align_regions(s);  // correspondences and a rigid transform for every region
-    label_points(s);   // the inlier test
+    warp_surface(s);   // springs carry what moves otherwise to the surface
+    done(s, Stage::deform);
+    label_points(s);  // the inlier test
     done(s, Stage::label);
     regroup_outliers(s);  // the same again on the outliers: a chain of rigid transforms
     done(s, Stage::regroup);
@@ -152,6 +155,7 @@ void Tracker::start_from(const RigidTransform& pose) noexcept {
   TrackedRegion& base = s.regions[0];
   base.alive = true;
   base.pose = base.last_pose = base.predicted = pose;
+  s.warp.reset(pose);
   s.following = true;
   s.search_begun = false;
   s.frames_failed = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/camera/surface.hpp"
+#include "core/deform/patch_warp.hpp"
 #include "core/detect/frame_detector.hpp"
 #include "core/track/label.hpp"
 #include "core/track/regroup.hpp"
@@ -34,8 +35,9 @@ struct TrackerState {
   // The object.
   RegionSet regions;
   RegionSet before;  // as they were before this frame, to return to when the frame fails
+  std::array<RigidTransform, kMaxPatches> patches_before;  // likewise
   RegroupState regroup_state;
-  MotionSplit motion_split;
+  PatchWarp warp;
   SightCounts counts;
   bool following = false;     // regions hold a pose to go on from
   bool was_tracked = false;   // ever
@@ -53,6 +55,7 @@ struct TrackerState {
 void observe_surface(TrackerState& s, const DepthFrame& frame) noexcept;
 void predict_regions(TrackerState& s) noexcept;
 void align_regions(TrackerState& s) noexcept;
+void warp_surface(TrackerState& s) noexcept;
 void label_points(TrackerState& s) noexcept;
 void regroup_outliers(TrackerState& s) noexcept;
 void match_deformed(TrackerState& s) noexcept;

@@ -90,26 +90,29 @@ void align_regions(TrackerState& s) noexcept {
   round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
   round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
   round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier);
+}
+
+void warp_surface(TrackerState& s) noexcept {
+  WarpSettings settings;
+  settings.material = s.settings.material;
+  settings.inward = kMotionGate;
+  settings.outward = kMotionGate / 2;  // a finger stands before the surface, a dent never does
+  warp_patches(s.tables, s.patches, s.surface, s.projector, s.tolerance, s.regions, settings, s.points,
+               s.warp);
   hold_steady(s.tables, s.surface, s.regions);
   for (TrackedRegion& region : s.regions)
     if (region.alive) region.motion = region.pose * region.last_pose.inverse();
 }
 
 void label_points(TrackerState& s) noexcept {
-  s.counts = label(s.tables, s.surface, s.projector, s.regions, s.tolerance, s.points);
+  s.counts = label({s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance}, s.regions, s.points);
 }
 
 void regroup_outliers(TrackerState& s) noexcept {
   RegroupSettings settings;
   settings.max_regions = s.settings.max_regions;
   settings.fewest_points = fewest_region_points(s);
-  AssociateSettings wide;  // all that may belong to a part which moves in its own way
-  wide.points = share_of_points(s, 1.0);
-  wide.gate = kMotionGate;
-  wide.with_deformed = true;
-  associate(s.tables, s.surface, s.projector, s.regions, wide, s.points);
-  const RegroupContext context{s.tables, s.patches, s.surface, s.projector, s.tolerance};
-  if (regroup(context, settings, s.regroup_state, s.motion_split, s.regions, s.points))
+  if (regroup({s.tables, s.patches, s.warp, s.tolerance}, settings, s.regroup_state, s.regions, s.points))
     carry_homes_to_unseen(s.tables, s.points);
   count_regions(s);
   for (TrackedRegion& region : s.regions) {
@@ -123,11 +126,7 @@ void regroup_outliers(TrackerState& s) noexcept {
 }
 
 void match_deformed(TrackerState& s) noexcept {
-  RadiusSearchSettings settings;
-  // Deformations go up to about a third of the object's radius; beyond, the nearest reading means nothing.
-  settings.radius =
-      std::min(static_cast<std::int32_t>(0.3 * s.model.radius() * kUnitsPerMetre), 60 * kUnitsPerMillimetre);
-  search_deformed(s.tables, s.surface, s.projector, s.regions, settings, s.taken_pixels, s.points);
+  search_deformed(s.tables, s.surface, s.projector, 2 * inlier_limit(s), s.taken_pixels, s.points);
 }
 
 bool judge(TrackerState& s) noexcept {
@@ -138,7 +137,7 @@ bool judge(TrackerState& s) noexcept {
   }
   const std::uint32_t seen_through =
       s.counts.in_front > deformed_matched ? s.counts.in_front - deformed_matched : 0;
-  const std::uint32_t hidden = s.counts.behind - s.counts.bulged;
+  const std::uint32_t hidden = s.counts.behind;
   const double explained = agree + 0.5 * deformed_matched;
   const double total = explained + 0.5 * deformed_matched + seen_through + 0.25 * hidden;
   s.confidence = total > 0 ? explained / total : 0;
@@ -148,6 +147,7 @@ bool judge(TrackerState& s) noexcept {
 
 void return_to_last_frame(TrackerState& s) noexcept {
   s.regions = s.before;
+  s.warp.pose = s.patches_before;
   for (std::size_t i = 0; i < s.tables.size; ++i)
     if (!s.regions[static_cast<std::size_t>(s.points.home[i])].alive) s.points.home[i] = 0;
 }
@@ -170,6 +170,10 @@ bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pos
     round_of_alignment(s, share_of_points(s, 0.5), gate, gate, settings);
     gate = std::max(gate * 3 / 4, 2 * inlier_limit(s));
   }
+  base.motion = RigidTransform();
+  s.warp.reset(base.pose);
+  base.last_pose = base.pose;
+  warp_surface(s);
   base.motion = RigidTransform();
   label_points(s);
   count_regions(s);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/track/motion_split.hpp"
+#include "core/geometry/vector6.hpp"
 
 namespace pliant {
 
@@ -117,10 +117,7 @@ void align(const Surface& surface, const AlignSettings& settings, const PointSta
     }
     const Vector6 x = a.ldlt().solve(b);
     if (!(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
-    RigidTransform step;
-    step.rotation = rotation_from_small_vector(x.head<3>());
-    step.translation = centre_metres + Vector3(x.tail<3>()) - step.rotation * centre_metres;
-    region.pose = step * region.pose;
+    region.pose = motion_about(x, centre_metres) * region.pose;
     region.pose.rotation = orthonormalised(region.pose.rotation);
     region.rms =
         std::sqrt(static_cast<double>(moments.square) / static_cast<double>(moments.weight)) * kResidual;

@@ -79,34 +79,60 @@ void carry_where_allowed(const ModelTables& model, const RegionSet& regions, con
   }
 }
 
-/// Marks points behind the readings as bulged where the surface climbs to them steadily from agreeing
-/// neighbours.
-std::uint32_t flood_bulges(const ModelTables& model, const Surface& surface, PointState& points) noexcept {
-  std::size_t head = 0, tail = 0;
-  for (std::size_t i = 0; i < model.size; ++i) {
-    points.group[i] = points.sight[i] == Sight::agrees ? 1 : 0;
-    if (points.group[i] != 0) points.queue[tail++] = static_cast<std::uint16_t>(i);
+/// What one frame says of one point.
+struct Verdict {
+  Sighting::Look look;        ///< at its region's place, or else where the warp puts it
+  bool off = false;           ///< speaks for its being off its region
+  bool doubtful = false;      ///< but where its region puts it, there is a surface, too
+  IntPoint rigid, warped;     ///< the two places
+  std::int32_t distance = 0;  ///< between them, the largest coordinate
+};
+
+std::int32_t largest(const IntPoint& a, const IntPoint& b) noexcept {
+  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+}
+
+Verdict examine(const LabelContext& context, const Sighting& sighting, const FixedPose& home,
+                const Sighting::Look& at_home, std::size_t i) noexcept {
+  Verdict verdict;
+  verdict.look = at_home;
+  verdict.rigid = home.point(context.model.x[i], context.model.y[i], context.model.z[i]);
+  verdict.warped = warped_point(context.model, context.patches, context.warp, i);
+  verdict.distance = largest(verdict.rigid, verdict.warped);
+  const bool apart = verdict.distance > context.tolerance.deformed(verdict.rigid.z);
+  if (at_home.sight == Sight::agrees && !apart) return verdict;
+  if (!apart && verdict.distance * 4 < context.tolerance.deformed(verdict.rigid.z)) {
+    verdict.off = at_home.sight == Sight::in_front;
+    return verdict;
   }
-  std::uint32_t bulged = 0;
-  while (head < tail) {  // every point enters the queue once
-    const std::size_t i = points.queue[head++];
-    for (const std::uint16_t n : neighbours_of(model, i)) {
-      if (n >= model.size || points.group[n] != 0 || points.sight[n] != Sight::behind) continue;
-      // a slope of 45° against the rest shape, and the noise of two readings
-      const std::int32_t climb = std::abs(points.residual[n] - points.residual[i]);
-      if (climb > model.spacing + 3 * surface.sigma(points.position[n].z)) continue;
-      points.group[n] = 1;
-      ++bulged;
-      points.queue[tail++] = n;
-    }
+  const FixedPose& own = context.warp.fixed[context.patches.patch_of[i]];
+  const Sighting::Look at_warp = sighting.look(
+      verdict.warped, own.direction(context.model.nx[i], context.model.ny[i], context.model.nz[i]));
+  verdict.doubtful = at_home.sight == Sight::agrees;
+  verdict.off = at_warp.sight == Sight::agrees || at_home.sight == Sight::in_front;
+  if (at_warp.sight == Sight::agrees || at_home.sight != Sight::agrees) verdict.look = at_warp;
+  return verdict;
+}
+
+/// Where the point is: with its region while it agrees, with the warp as far as that leaves the inlier limit.
+IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) noexcept {
+  if (label >= 0) return verdict.rigid;
+  const IntPoint &r = verdict.rigid, &w = verdict.warped;
+  if (label == kDeformed) {
+    const std::int32_t off = verdict.look.sight == Sight::agrees ? verdict.look.residual : 0;
+    const IntPoint& n = verdict.look.normal;
+    return {w.x + ((n.x * off + 8192) >> 14), w.y + ((n.y * off + 8192) >> 14),
+            w.z + ((n.z * off + 8192) >> 14)};
   }
-  return bulged;
+  const std::int32_t share = std::min(verdict.distance, limit);  // of limit: small differences are noise
+  return {r.x + (w.x - r.x) * share / limit, r.y + (w.y - r.y) * share / limit,
+          r.z + (w.z - r.z) * share / limit};
 }
 
 }  // namespace
 
-SightCounts label(const ModelTables& model, const Surface& surface, const Projector& projector,
-                  const RegionSet& regions, const Tolerance& tolerance, PointState& points) noexcept {
+SightCounts label(const LabelContext& context, const RegionSet& regions, PointState& points) noexcept {
+  const ModelTables& model = context.model;
   std::array<FixedPose, limits::kMaxRegions> poses;
   int alive = 0;
   for (std::size_t k = 0; k < regions.size(); ++k) {
@@ -114,51 +140,52 @@ SightCounts label(const ModelTables& model, const Surface& surface, const Projec
     poses[k] = FixedPose(regions[k].pose, model.centre);
     ++alive;
   }
-  const Sighting sighting(model, surface, projector, tolerance);
+  const Sighting sighting(model, context.surface, context.projector, context.tolerance);
   SightCounts counts;
+  points.frames = std::min(points.frames + 1, kMisfitFirstFrames + 1);
   for (std::size_t i = 0; i < model.size; ++i) {
     Sighting::Look look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
-    if (alive > 1 &&
-        consider_rivals(model, regions, sighting, poses, tolerance.deformed(look.point.z), look, points, i))
+    const std::int32_t limit = context.tolerance.deformed(look.point.z);
+    if (alive > 1 && consider_rivals(model, regions, sighting, poses, limit, look, points, i))
       look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
-    if (alive > 1 && look.sight == Sight::none) {
+    if (alive > 1 && look.sight == Sight::none)
       carry_where_allowed(model, regions, sighting, poses, points, i);
-      const auto home = static_cast<std::size_t>(points.home[i]);
-      look.point = poses[home].point(model.x[i], model.y[i], model.z[i]);
-    }
-    points.sight[i] = look.sight;
-    points.residual[i] = look.residual;
-    points.match[i] = look.match;
-    points.position[i] = look.point;
-    counts.facing += look.facing ? 1 : 0;
-  }
-  points.frames = std::min(points.frames + 1, kMisfitFirstFrames + 1);
-  counts.bulged = flood_bulges(model, surface, points);
+    const Verdict verdict =
+        examine(context, sighting, poses[static_cast<std::size_t>(points.home[i])], look, i);
+    const Sight sight = verdict.look.sight;
+    counts.facing += verdict.look.facing ? 1 : 0;
+    counts.in_front += sight == Sight::in_front ? 1 : 0;
+    counts.behind += sight == Sight::behind ? 1 : 0;
 
-  for (std::size_t i = 0; i < model.size; ++i) {
-    const Sight sight = points.sight[i];
-    const bool bulged = sight == Sight::behind && points.group[i] != 0;
-    if (sight == Sight::agrees) {
-      ++counts.agree;
+    if (verdict.off) {
+      raise(points.evidence[i], verdict.doubtful ? 1 : 2, kEvidenceMax);
+    } else if (sight == Sight::agrees) {
       raise(points.evidence[i], -2, kEvidenceMax);
-      points.misfit[i] += (points.residual[i] * 16 - points.misfit[i]) /
+      points.misfit[i] += (verdict.look.residual * 16 - points.misfit[i]) /
                           (points.frames <= kMisfitFirstFrames ? points.frames : kMisfitFrames);
-    } else if (sight == Sight::in_front || bulged) {
-      raise(points.evidence[i], 2, kEvidenceMax);
     } else if (points.evidence[i] < kEvidenceDeformed) {
       raise(points.evidence[i], -1, kEvidenceMax);
     }
-    counts.in_front += sight == Sight::in_front ? 1 : 0;
-    counts.behind += sight == Sight::behind ? 1 : 0;
     const bool off = points.evidence[i] >= kEvidenceDeformed;
-    if (sight == Sight::agrees && !off) {
-      points.label[i] = points.home[i];
-    } else if (off && (sight == Sight::in_front || sight == Sight::agrees || bulged)) {
+    if (off && (sight == Sight::agrees || sight == Sight::in_front)) {
       points.label[i] = kDeformed;
+      counts.deformed += sight == Sight::agrees ? 1 : 0;
+    } else if (!off && sight == Sight::agrees && look.sight == Sight::agrees) {
+      points.label[i] = points.home[i];
+      ++counts.agree;
+    } else if (sight == Sight::agrees) {
+      points.label[i] = kDeformed;  // seen, but not where its region puts it
+      ++counts.deformed;
     } else {
       points.label[i] = kNotObserved;
     }
-    if (points.label[i] == kNotObserved) points.match[i] = -1;
+    points.sight[i] = sight;
+    points.residual[i] = points.label[i] == kDeformed ? 0 : verdict.look.residual;
+    points.match[i] = sight == Sight::agrees ? verdict.look.match : -1;
+    points.position[i] = place(verdict, points.label[i], limit);
+    const IntPoint& r = verdict.rigid;
+    const IntPoint& at = points.position[i];
+    points.offset[i] = {at.x - r.x, at.y - r.y, at.z - r.z};
   }
   return counts;
 }

@@ -10,8 +10,10 @@
 
 namespace pliant {
 
-/// Most patches of a model; about 60 points each for a model of 6,000.
-inline constexpr std::size_t kMaxPatches = 96;
+/// Most patches of a model; 25 points each for a model of 6,000.
+inline constexpr std::size_t kMaxPatches = 240;
+/// Most borders between patches: a surface's patches have six neighbours on average, two patches a border.
+inline constexpr std::size_t kMaxBorders = 5 * kMaxPatches;
 
 /// A set of patches, one bit each.
 class PatchSet {
@@ -24,12 +26,32 @@ class PatchSet {
   std::array<std::uint32_t, (kMaxPatches + 31) / 32> words_{};
 };
 
+/// Where two patches meet.
+struct PatchBorder {
+  std::uint8_t a = 0, b = 0;
+  std::uint32_t edges = 0;           ///< of the surface graph that cross it
+  Vector3 centre = Vector3::Zero();  ///< model frame, metres
+};
+
+/// The patches that a point moves with when the surface bends.
+struct PointBlend {
+  static constexpr int kShift = 7;
+  std::array<std::uint8_t, 4> patch{};
+  std::array<std::uint8_t, 4> weight{};  ///< Q7, sum 128
+};
+
 /// Every point belongs to the patch of the seed that is nearest along the surface graph; the seeds are the
 /// first points of the model, a uniform sampling.
 struct PatchTables {
   std::size_t count = 0;
+  double radius = 0;                               ///< of a patch, metres
   std::span<std::uint8_t> patch_of;                ///< by model point
+  std::span<PointBlend> blend;                     ///< by model point
   std::array<PatchSet, kMaxPatches> neighbours{};  ///< that share an edge of the graph
+  std::array<std::uint32_t, kMaxPatches> sizes{};  ///< points
+  std::array<Vector3, kMaxPatches> centres;        ///< model frame, metres
+  std::array<PatchBorder, kMaxBorders> borders;    ///< ascending by (a, b)
+  std::size_t border_count = 0;
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
   /// `queue`: scratch of the model's size.

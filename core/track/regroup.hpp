@@ -2,7 +2,7 @@
 // regions of their own, regions that move alike become one again.
 #pragma once
 
-#include "core/track/motion_split.hpp"
+#include "core/track/part_search.hpp"
 #include "core/track/patches.hpp"
 #include "core/track/track_state.hpp"
 
@@ -11,14 +11,17 @@ namespace pliant {
 struct RegroupSettings {
   int max_regions = limits::kMaxRegions;
   std::uint32_t fewest_points = 40;  ///< of a region; derived from the model's size
-  int merge_after = 10;              ///< frames in which a region must move like its parent
+  int merge_after = 4;               ///< frames in which two regions must move alike
+  int split_after = 3;               ///< frames in which a part must move in its own way
 };
 
 /// Memory of the regrouping between frames.
 struct RegroupState {
-  int pause = 0;  ///< frames until the next try to split outliers off
-  std::array<int, limits::kMaxRegions>
-      suspected{};  ///< frames in a row in which two motions showed, by region
+  std::array<std::uint8_t, kMaxPatches>
+      switching{};  ///< frames in a row in which a neighbour suited a patch better
+  std::array<std::array<std::uint8_t, limits::kMaxRegions>, limits::kMaxRegions>
+      alike{};                                       ///< frames in a row
+  std::array<int, limits::kMaxRegions> suspected{};  ///< frames in a row in which a region showed two motions
 };
 
 /// Where a region hangs on its neighbours.
@@ -33,16 +36,14 @@ struct Joint {
 struct RegroupContext {
   const ModelTables& model;
   const PatchTables& patches;
-  const Surface& surface;
-  const Projector& projector;
+  PatchWarp& warp;  ///< its homes follow
   const Tolerance& tolerance;
 };
 
-/// Merges regions that moved like their parent for long enough or came off it, splits a region in two where
-/// two motions explain it clearly better than one for two frames in a row, and else tries to make a region of
-/// a group of outliers. The two sides of a split must stay joined: their motions agree at the centre of the
-/// border between them. True when a region came or went.
+/// Lets patches go over to a neighbouring region that suits them better, makes one of regions that one motion
+/// suits as well as two, or else makes a region of a part that the warp takes along a rigid motion of its
+/// own. Each needs some frames in a row. True when a region came or went.
 bool regroup(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
-             MotionSplit& scratch, RegionSet& regions, PointState& points) noexcept;
+             RegionSet& regions, PointState& points) noexcept;
 
 }  // namespace pliant

@@ -5,10 +5,10 @@
 
 namespace pliant {
 
-Sighting::Look Sighting::look(std::size_t i, const FixedPose& pose) const noexcept {
+Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) const noexcept {
   Look out;
-  out.normal = pose.direction(model_.nx[i], model_.ny[i], model_.nz[i]);
-  out.point = pose.point(model_.x[i], model_.y[i], model_.z[i]);
+  out.normal = normal;
+  out.point = point;
   int u = 0, v = 0;
   if (!faces_camera(out.point, out.normal, kLeastFacing) || !projector_.project(out.point, u, v)) return out;
   out.facing = true;

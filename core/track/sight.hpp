@@ -30,7 +30,12 @@ class Sighting {
   /// Looks at the reading of the point's pixel, then at the eight around it: the agreeing one with the
   /// smallest residual counts; without one, the central reading tells whether the point stands before or
   /// behind the surface.
-  [[nodiscard]] Look look(std::size_t i, const FixedPose& pose) const noexcept;
+  [[nodiscard]] Look look(std::size_t i, const FixedPose& pose) const noexcept {
+    return look(pose.point(model_.x[i], model_.y[i], model_.z[i]),
+                pose.direction(model_.nx[i], model_.ny[i], model_.nz[i]));
+  }
+  /// The same for a point and its outward normal (Q14).
+  [[nodiscard]] Look look(const IntPoint& point, const IntPoint& normal) const noexcept;
 
   /// Does the camera see through the point under `pose`, whichever way it faces? Then it cannot be there.
   [[nodiscard]] bool refuted(std::size_t i, const FixedPose& pose) const noexcept {

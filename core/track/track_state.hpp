@@ -26,7 +26,6 @@ struct TrackedRegion {
   std::uint32_t members = 0;   ///< model points whose home it is
   std::int32_t scale = 0;      ///< robust spread of its residuals, 1/16 mm
   double rms = 0;              ///< metres
-  int frames_alike = 0;        ///< frames in a row in which it moved like its parent
   int frames_unseen = 0;       ///< frames in a row without enough readings
 };
 

@@ -70,7 +70,7 @@ TEST_F(Label, WhatStandsBehindSomethingElseIsNotObserved) {
   scene().see(picture);
   const SightCounts counts = frames(6);
   EXPECT_GT(counts.behind, counts.facing / 8);
-  EXPECT_LT(counts.bulged, counts.behind / 8);
+  EXPECT_LT(counts.deformed, counts.behind / 8);
   for (std::size_t i = 0; i < scene().tables.size; ++i) {
     int u = 0, v = 0;
     if (!scene().projector.project(scene().points.position[i], u, v) || u > 156) continue;

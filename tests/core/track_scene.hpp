@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/deform/patch_warp.hpp"
 #include "core/track/align.hpp"
 #include "core/track/associate.hpp"
 #include "core/track/label.hpp"
@@ -58,7 +59,12 @@ class TrackScene {
       align(surface, align_settings, points, regions);
     }
   }
-  SightCounts label_now() { return label(tables, surface, projector, regions, tolerance, points); }
+  /// With a surface that the base region alone moves.
+  SightCounts label_now() {
+    warp->reset(regions[0].pose);
+    for (FixedPose& fixed : warp->fixed) fixed = FixedPose(regions[0].pose, tables.centre);
+    return label({tables, patches, *warp, surface, projector, tolerance}, regions, points);
+  }
   [[nodiscard]] Vector3 rest(std::size_t i) const {
     const Point3f& p = model.positions()[i];
     return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
@@ -85,6 +91,7 @@ class TrackScene {
   Projector projector;
   Tolerance tolerance;
   PatchTables patches;
+  std::unique_ptr<PatchWarp> warp = std::make_unique<PatchWarp>();
   PointState points;
   RegionSet regions;
 };

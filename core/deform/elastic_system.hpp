@@ -1,0 +1,51 @@
+// The linear system of one step of the warp: how far every patch turns and moves, so that readings, springs
+// and the regions that the patches hang on are in balance.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/deform/symmetric6.hpp"
+#include "core/track/patches.hpp"
+
+namespace pliant {
+
+/// A border between two patches. Stretching it is stiff, bending it is soft.
+struct ElasticLink {
+  std::uint8_t a = 0, b = 0;
+  double stretch = 0;    ///< stiffness of the point where they meet, in weighted readings
+  double bend = 0;       ///< of the angle between them, in weighted readings times metres squared
+  Vector3 arm_a, arm_b;  ///< from the patches' centres to where each puts the point, camera frame, metres
+};
+
+/// Solved by conjugate gradients with a fixed number of iterations, preconditioned by the 6×6 blocks of the
+/// diagonal: a bounded number of operations in a fixed order.
+class ElasticSystem {
+ public:
+  void clear(std::size_t patches) noexcept;
+
+  /// Own forces of patch p: readings and what anchors it.
+  [[nodiscard]] Symmetric6& own(std::size_t p) noexcept { return own_[p]; }
+  [[nodiscard]] Vector6& force(std::size_t p) noexcept { return force_[p]; }
+  /// `gap`: from where b puts the shared point to where a does; `turn`: rotation vector from b to a.
+  void add_link(const ElasticLink& link, const Vector3& gap, const Vector3& turn) noexcept;
+
+  /// The motions of all patches about their centres. False when the system is singular.
+  [[nodiscard]] bool solve(int iterations) noexcept;
+  [[nodiscard]] const Vector6& motion(std::size_t p) const noexcept { return x_[p]; }
+
+ private:
+  using Vectors = std::array<Vector6, kMaxPatches>;
+  void multiply(const Vectors& x, Vectors& y) const noexcept;
+  [[nodiscard]] double dot(const Vectors& x, const Vectors& y) const noexcept;
+
+  std::size_t count_ = 0, links_count_ = 0;
+  std::array<ElasticLink, kMaxBorders> links_;
+  std::array<Symmetric6, kMaxPatches> own_, block_;
+  std::array<Factor6, kMaxPatches> factor_;
+  Vectors force_, x_, residual_, direction_, scratch_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,283 @@
+#include "core/deform/patch_warp.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/fixed/integer_root.hpp"
+#include "core/track/associate.hpp"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::int32_t kCos75 = 4240;  // Q14
+/// Of all readings that a patch could have, the share that its region's pull is worth.
+constexpr double kAnchorShare = 0.02;
+
+struct Stiffness {
+  double stretch = 0, bend = 0;  // of one crossing edge
+};
+
+/// An edge that crosses a border gives by `strain` of its length, or bends by `turn`, where a reading is off
+/// by its noise. The soft end stretches like fleece, the stiff end like leather.
+Stiffness stiffness_of(const ModelTables& model, double noise, double material) noexcept {
+  const double strain = 0.2 + 0.8 * material, turn = 0.5 + material;
+  const double give = strain * model.spacing / kUnitsPerMetre;
+  return {noise * noise / (give * give), noise * noise / (turn * turn)};
+}
+
+void find_homes(const PatchTables& patches, const PointState& points, PatchWarp& warp) noexcept {
+  std::array<std::array<std::uint16_t, limits::kMaxRegions>, kMaxPatches> counts{};
+  for (std::size_t i = 0; i < points.home.size(); ++i)
+    ++counts[patches.patch_of[i]][static_cast<std::size_t>(points.home[i])];
+  for (std::size_t p = 0; p < patches.count; ++p)
+    warp.home[p] =
+        static_cast<std::int8_t>(std::max_element(counts[p].begin(), counts[p].end()) - counts[p].begin());
+}
+
+/// The patches' centres and integer poses.
+void place(const ModelTables& model, const PatchTables& patches, PatchWarp& warp) noexcept {
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    warp.fixed[p] = FixedPose(warp.pose[p], model.centre);
+    const Vector3 c = warp.pose[p] * patches.centres[p] * kUnitsPerMetre;
+    warp.centre[p] = {static_cast<std::int32_t>(c.x()), static_cast<std::int32_t>(c.y()),
+                      static_cast<std::int32_t>(c.z())};
+  }
+}
+
+struct Gates {
+  std::int32_t inward = 0, outward = 0;  // 1/16 mm, at most 8191
+  PixelSpan spacing;
+};
+
+/// What gather() works with.
+struct Look {
+  const ModelTables& model;
+  const PatchTables& patches;
+  const Surface& surface;
+  const Projector& projector;
+  Gates gates;
+  int step = 1;  // pixels between looks aside
+};
+
+constexpr int kLooksAside = 4;  // to each side: beyond, another part of the object is as likely
+
+/// The camera sees through a point at pixel (u, v): the object's edge has moved aside. The nearest reading of
+/// the object along the four directions of the picture tells where to.
+bool find_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoint& n,
+                IntPoint& found) noexcept {
+  std::int64_t best = static_cast<std::int64_t>(look.gates.inward) * look.gates.inward;
+  bool any = false;
+  constexpr std::array<std::array<int, 2>, 4> kDirections = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  for (const auto& direction : kDirections)
+    for (int k = 1; k <= kLooksAside; ++k) {
+      const int uu = u + direction[0] * k * look.step, vv = v + direction[1] * k * look.step;
+      const std::uint16_t z8 = look.surface.depth(uu, vv);
+      const std::int32_t gap = 2 * z8 - at.z;
+      if (z8 == 0 || gap > look.gates.inward || -gap > look.gates.outward) continue;
+      const IntPoint q = look.surface.vertex(uu, vv, z8);
+      const std::int64_t x = q.x - at.x, y = q.y - at.y, z = q.z - at.z, square = x * x + y * y + z * z;
+      if (square < best && look.surface.faces(uu, vv, Surface::normal_step(z8, look.gates.spacing), n)) {
+        best = square;
+        found = q;
+        any = true;
+      }
+      break;  // what lies beyond the first is farther
+    }
+  return any;
+}
+
+/// Adds the row of a reading `q` for a point `at` along `n` (Q14).
+void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::int32_t weight,
+             const IntPoint& centre, PlaneMoments& moments) noexcept {
+  const std::int32_t x = at.x - centre.x, y = at.y - centre.y, z = at.z - centre.z;
+  moments.add(
+      {(y * n.z - z * n.y) >> 14, (z * n.x - x * n.z) >> 14, (x * n.y - y * n.x) >> 14, n.x, n.y, n.z},
+      residual, weight);
+}
+
+void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoint& n, const IntPoint& centre,
+               PlaneMoments& moments) noexcept {
+  IntPoint q;
+  if (!find_aside(look, u, v, at, n, q)) return;
+  const IntPoint d{q.x - at.x, q.y - at.y, q.z - at.z};
+  const auto length =
+      static_cast<std::int32_t>(integer_sqrt(static_cast<std::uint32_t>(d.x * d.x + d.y * d.y + d.z * d.z)));
+  if (length == 0) return;
+  const std::int32_t w = tukey_weight(length, look.gates.inward);
+  add_row(at, {d.x * 16384 / length, d.y * 16384 / length, d.z * 16384 / length}, length * 16, w, centre,
+          moments);
+}
+
+/// The integer kernel: every point that faces the camera, beside the reading of its pixel, into the moments
+/// of its patch about the patch's centre.
+[[gnu::noinline]] void gather(const Look& look, const PointState& points, PatchWarp& warp) noexcept {
+  const ModelTables& model = look.model;
+  for (std::size_t i = 0; i < model.size; ++i) {
+    const std::size_t p = look.patches.patch_of[i];
+    const FixedPose& pose = warp.fixed[p];
+    const IntPoint n = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
+    const IntPoint at = pose.point(model.x[i], model.y[i], model.z[i]);
+    if (!faces_camera(at, n, kCos75)) continue;
+    int u = 0, v = 0;
+    if (!look.projector.project(at, u, v)) continue;
+    const std::uint16_t z8 = look.surface.depth_at(u, v);
+    const std::int32_t gap = 2 * z8 - at.z;
+    if (z8 != 0 && -gap > look.gates.outward) continue;
+    if (z8 == 0 || gap > look.gates.inward) {
+      add_aside(look, u, v, at, n, warp.centre[p], warp.moments[p]);
+      continue;
+    }
+    const IntPoint q = look.surface.vertex(u, v, z8);
+    const std::int32_t residual = plane_distance(q, at, n) - points.misfit[i];
+    const std::int32_t limit = (residual > 0 ? look.gates.outward : look.gates.inward) * 16;
+    const std::int32_t w = tukey_weight(residual, limit);
+    if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
+    add_row(at, n, residual, w, warp.centre[p], warp.moments[p]);
+  }
+}
+
+void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
+  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
+                   kResidual = 1 / 256000.0;
+  std::size_t k = 0;
+  for (std::size_t row = 0; row < 6; ++row) {
+    const double unit_row = row < 3 ? kArm : kNormal;
+    for (std::size_t column = row; column < 6; ++column)
+      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
+    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
+  }
+}
+
+/// Rotation vector from b to a, exact to second order: half of the skew part of a·bᵀ.
+Vector3 turn_between(const Matrix3& a, const Matrix3& b) noexcept {
+  Vector3 turn = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) turn += 0.5 * Vector3(b.col(k)).cross(Vector3(a.col(k)));
+  return turn;
+}
+
+/// Weight of a spring that gives way beyond `scale`.
+double giving_way(double square, double scale) noexcept {
+  const double w = scale * scale / (scale * scale + square);
+  return w * w;
+}
+
+void add_anchor(const PatchTables& patches, const RigidTransform& region, double limit, std::size_t p,
+                PatchWarp& warp) noexcept {
+  const RigidTransform& pose = warp.pose[p];
+  const Vector3 gap = region * patches.centres[p] - pose * patches.centres[p];
+  const double k = kAnchorShare * patches.sizes[p] * giving_way(gap.squaredNorm(), limit);
+  const double k_turn = k * 0.5 * patches.radius * patches.radius;
+  warp.system.own(p).add_shift_spring(k);
+  warp.system.own(p).add_turn_spring(k_turn);
+  warp.system.force(p).tail<3>() += k * gap;
+  warp.system.force(p).head<3>() += k_turn * turn_between(region.rotation, pose.rotation);
+}
+
+/// Joints turn far where the rest of the surface barely bends: bending gives way.
+constexpr double kFreeTurn = 0.5;  // radians
+
+void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWarp& warp) noexcept {
+  double energy = 0;
+  for (std::size_t k = 0; k < patches.border_count; ++k) {
+    const PatchBorder& border = patches.borders[k];
+    const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
+    const Vector3 at_a = a * border.centre, at_b = b * border.centre;
+    const Vector3 turn = turn_between(a.rotation, b.rotation);
+    ElasticLink link;
+    link.a = border.a;
+    link.b = border.b;
+    link.stretch = stiffness.stretch * border.edges;
+    link.bend = stiffness.bend * border.edges * giving_way(turn.squaredNorm(), kFreeTurn);
+    link.arm_a = at_a - a * patches.centres[border.a];
+    link.arm_b = at_b - b * patches.centres[border.b];
+    warp.system.add_link(link, at_a - at_b, turn);
+    energy += (at_a - at_b).squaredNorm();
+  }
+  warp.energy = patches.border_count > 0 ? energy / static_cast<double>(patches.border_count) : 0;
+}
+
+/// How well readings fit a patch.
+struct Fit {
+  double weight = 0;  // of readings
+  double square = 0;  // mean residual squared, metres squared
+};
+
+void measure(const Look& look, const PointState& points, PatchWarp& warp,
+             std::array<Fit, kMaxPatches>& fits) noexcept {
+  for (std::size_t p = 0; p < look.patches.count; ++p) warp.moments[p] = PlaneMoments();
+  place(look.model, look.patches, warp);
+  gather(look, points, warp);
+  for (std::size_t p = 0; p < look.patches.count; ++p) {
+    const PlaneMoments& m = warp.moments[p];
+    const auto weight = static_cast<double>(m.weight);
+    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0};
+  }
+}
+
+/// Patches that the readings put as well where their region is go back there: what slid along the surface
+/// unnoticed does not add up over the frames.
+void return_home(const Look& look, const RegionSet& regions, const PointState& points, double noise,
+                 PatchWarp& warp) noexcept {
+  std::array<Fit, kMaxPatches> here, home;
+  measure(look, points, warp, here);
+  const std::array<RigidTransform, kMaxPatches> own = warp.pose;
+  for (std::size_t p = 0; p < look.patches.count; ++p)
+    warp.pose[p] = regions[static_cast<std::size_t>(warp.home[p])].pose;
+  measure(look, points, warp, home);
+  for (std::size_t p = 0; p < look.patches.count; ++p) {
+    const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
+    if (!as_many || home[p].square > std::max(1.1 * here[p].square, 0.04 * noise * noise))
+      warp.pose[p] = own[p];
+  }
+}
+
+}  // namespace
+
+void warp_patches(const ModelTables& model, const PatchTables& patches, const Surface& surface,
+                  const Projector& projector, const Tolerance& tolerance, const RegionSet& regions,
+                  const WarpSettings& settings, const PointState& points, PatchWarp& warp) noexcept {
+  find_homes(patches, points, warp);
+  std::array<RigidTransform, limits::kMaxRegions> step;
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (regions[k].alive) step[k] = regions[k].pose * regions[k].last_pose.inverse();
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    warp.pose[p] = step[static_cast<std::size_t>(warp.home[p])] * warp.pose[p];
+    warp.pose[p].rotation = orthonormalised(warp.pose[p].rotation);
+  }
+  const auto z = static_cast<std::int32_t>((regions[0].pose * model.centre).z() * kUnitsPerMetre);
+  const double noise = surface.sigma(z) / kUnitsPerMetre, limit = tolerance.deformed(z) / kUnitsPerMetre;
+  const Stiffness stiffness = stiffness_of(model, noise, settings.material);
+  Look look{model, patches, surface, projector, {}, 1};
+  Gates& gates = look.gates;
+  gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
+           surface.pixel_span(model.spacing / kUnitsPerMetre)};
+  return_home(look, regions, points, noise, warp);
+  for (int round = 0; round < settings.rounds; ++round) {
+    for (std::size_t p = 0; p < patches.count; ++p) warp.moments[p] = PlaneMoments();
+    place(model, patches, warp);
+    look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
+    gather(look, points, warp);
+    warp.system.clear(patches.count);
+    for (std::size_t p = 0; p < patches.count; ++p) {
+      add_readings(warp.moments[p], warp.system.own(p), warp.system.force(p));
+      warp.seen[p] = static_cast<double>(warp.moments[p].weight) / 256;
+      add_anchor(patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
+    }
+    add_borders(patches, stiffness, warp);
+    if (!warp.system.solve(settings.iterations)) break;
+    for (std::size_t p = 0; p < patches.count; ++p) {
+      const Vector6& x = warp.system.motion(p);
+      if (!(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
+      warp.pose[p] = motion_about(x, warp.pose[p] * patches.centres[p]) * warp.pose[p];
+    }
+    // the nearer the patches are, the less a reading far off has to do with them
+    gates.inward = std::max(gates.inward * 3 / 4, 2 * tolerance.deformed(z));
+    gates.outward = std::max(gates.outward * 3 / 4, 2 * tolerance.deformed(z));
+  }
+  place(model, patches, warp);
+}
+
+}  // namespace pliant

@@ -1,0 +1,59 @@
+// The warp: every patch of the model follows the readings that it sees, held by springs to its neighbours
+// and, softly, to its rigid region. A mass-spring model whose masses are small rigid pieces of the surface:
+// stretching is stiff, bending is soft, and what nobody sees follows what is seen.
+#pragma once
+
+#include <array>
+
+#include "core/deform/elastic_system.hpp"
+#include "core/fixed/moments.hpp"
+#include "core/track/track_state.hpp"
+
+namespace pliant {
+
+struct WarpSettings {
+  int rounds = 3;            ///< of looking up readings and solving [1, 8]
+  int iterations = 12;       ///< of the solver in each round [1, 64]
+  double material = 0.5;     ///< 0 stiff … 1 soft [0, 1]
+  std::int32_t inward = 0;   ///< how far behind a point its reading may lie, 1/16 mm
+  std::int32_t outward = 0;  ///< how far before it: beyond, it is something else in front, 1/16 mm
+};
+
+/// The state of the warp, kept from frame to frame, and its scratch.
+struct PatchWarp {
+  std::array<RigidTransform, kMaxPatches> pose;  ///< camera <- model, of each patch
+  std::array<std::int8_t, kMaxPatches> home{};   ///< region of most of its points
+  std::array<double, kMaxPatches> seen{};        ///< weighted readings of this frame
+  double energy = 0;                             ///< mean strain of the borders, metres squared
+
+  // scratch
+  std::array<PlaneMoments, kMaxPatches> moments;
+  std::array<FixedPose, kMaxPatches> fixed;
+  std::array<IntPoint, kMaxPatches> centre;
+  ElasticSystem system;
+
+  void reset(const RigidTransform& all) noexcept { pose.fill(all); }
+};
+
+/// Takes the patches along with the motion of their regions since the last frame, then lets them follow the
+/// readings. Uses the poses of `regions` and the homes of `points`; changes `warp` only.
+void warp_patches(const ModelTables& model, const PatchTables& patches, const Surface& surface,
+                  const Projector& projector, const Tolerance& tolerance, const RegionSet& regions,
+                  const WarpSettings& settings, const PointState& points, PatchWarp& warp) noexcept;
+
+/// Where the warp puts a point: the blend of what its patches say. Camera frame, 1/16 mm.
+[[nodiscard]] inline IntPoint warped_point(const ModelTables& model, const PatchTables& patches,
+                                           const PatchWarp& warp, std::size_t i) noexcept {
+  const PointBlend& blend = patches.blend[i];
+  IntPoint sum{1 << (PointBlend::kShift - 1), 1 << (PointBlend::kShift - 1), 1 << (PointBlend::kShift - 1)};
+  for (std::size_t j = 0; j < 4; ++j) {
+    if (blend.weight[j] == 0) break;
+    const IntPoint p = warp.fixed[blend.patch[j]].point(model.x[i], model.y[i], model.z[i]);
+    sum.x += blend.weight[j] * p.x;
+    sum.y += blend.weight[j] * p.y;
+    sum.z += blend.weight[j] * p.z;
+  }
+  return {sum.x >> PointBlend::kShift, sum.y >> PointBlend::kShift, sum.z >> PointBlend::kShift};
+}
+
+}  // namespace pliant

@@ -1,0 +1,160 @@
+#include "core/track/part_search.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+
+namespace {
+
+constexpr std::size_t kSeeds = 8;
+constexpr int kRounds = 4;
+constexpr int kFitRounds = 3;
+constexpr double kRotationSupport = 0.5;  // a patch's turn is known from its own few readings only
+
+bool counts(const PatchWarp& warp, std::size_t p, std::int8_t k) noexcept {
+  return warp.home[p] == k && patch_counts(warp, p);
+}
+
+struct Attempt {
+  PatchSet set;
+  RigidTransform pose;
+  double points = 0, own = 0, region = 0;  // sums of weighted squares about the two poses
+};
+
+/// Connected patches from `seed` on that `pose` suits, and suits better than the region's pose does.
+PatchSet grow(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, std::size_t seed,
+              const RigidTransform& pose, const RigidTransform& region, double limit) noexcept {
+  std::array<std::uint8_t, kMaxPatches> queue{};
+  std::size_t head = 0, tail = 0;
+  PatchSet set;
+  set.add(seed);
+  queue[tail++] = static_cast<std::uint8_t>(seed);
+  const double most = 0.5 * limit;
+  while (head < tail) {
+    const std::size_t p = queue[head++];
+    for (std::size_t q = 0; q < patches.count; ++q) {
+      if (!patches.neighbours[p].has(q) || set.has(q) || !counts(warp, q, k)) continue;
+      const double own = patch_deviation(patches, warp, q, pose);
+      if (own > most * most || own >= patch_deviation(patches, warp, q, region)) continue;
+      set.add(q);
+      queue[tail++] = static_cast<std::uint8_t>(q);
+    }
+  }
+  return set;
+}
+
+void measure(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, const RigidTransform& region,
+             Attempt& attempt) noexcept {
+  attempt.points = attempt.own = attempt.region = 0;
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    if (!attempt.set.has(p) || !counts(warp, p, k)) continue;
+    attempt.points += warp.seen[p];
+    attempt.own += warp.seen[p] * patch_deviation(patches, warp, p, attempt.pose);
+    attempt.region += warp.seen[p] * patch_deviation(patches, warp, p, region);
+  }
+}
+
+std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
+                       const RigidTransform& region, double moved,
+                       std::array<std::size_t, kSeeds>& seeds) noexcept {
+  std::size_t count = 0;
+  std::array<double, kSeeds> worth{};
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    if (!counts(warp, p, k)) continue;
+    const double deviation = patch_deviation(patches, warp, p, region);
+    if (deviation < moved * moved) continue;
+    std::size_t place = count;
+    while (place > 0 && worth[place - 1] < deviation) --place;
+    if (place == kSeeds) continue;
+    if (count < kSeeds) ++count;
+    for (std::size_t j = count - 1; j > place; --j) {
+      worth[j] = worth[j - 1];
+      seeds[j] = seeds[j - 1];
+    }
+    worth[place] = deviation;
+    seeds[place] = p;
+  }
+  return count;
+}
+
+}  // namespace
+
+double patch_deviation(const PatchTables& patches, const PatchWarp& warp, std::size_t p,
+                       const RigidTransform& pose) noexcept {
+  const RigidTransform& own = warp.pose[p];
+  const double shift = (own * patches.centres[p] - pose * patches.centres[p]).squaredNorm();
+  // points of a disc turn by radius / 2 times the angle in the mean square
+  const double turn = (own.rotation - pose.rotation).squaredNorm() * 0.5;
+  return shift + kRotationSupport * 0.25 * patches.radius * patches.radius * turn;
+}
+
+RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp, const PatchSet& set,
+                           const RigidTransform& start) noexcept {
+  RigidTransform pose = start;
+  const double arm = std::sqrt(kRotationSupport) * 0.5 * patches.radius;
+  for (int round = 0; round < kFitRounds; ++round) {
+    Vector3 middle = Vector3::Zero();
+    double weight = 0;
+    for (std::size_t p = 0; p < patches.count; ++p)
+      if (set.has(p)) {
+        middle += warp.seen[p] * (pose * patches.centres[p]);
+        weight += warp.seen[p];
+      }
+    if (!(weight > 0)) return pose;
+    middle /= weight;
+    Symmetric6 a;
+    Vector6 b = Vector6::Zero();
+    for (std::size_t p = 0; p < patches.count; ++p) {
+      if (!set.has(p) || !(warp.seen[p] > 0)) continue;
+      const double w = warp.seen[p];
+      const Vector3 at = pose * patches.centres[p], gap = warp.pose[p] * patches.centres[p] - at;
+      a.add_point_spring(w, at - middle);
+      b.head<3>() += w * Vector3(at - middle).cross(gap);
+      b.tail<3>() += w * gap;
+      Vector3 turn = Vector3::Zero();
+      for (int column = 0; column < 3; ++column)
+        turn += 0.5 * Vector3(pose.rotation.col(column)).cross(Vector3(warp.pose[p].rotation.col(column)));
+      a.add_turn_spring(w * arm * arm);
+      b.head<3>() += w * arm * arm * turn;
+    }
+    Factor6 factor;
+    if (!factor.factorise(a)) return pose;
+    pose = motion_about(factor.solve(b), middle) * pose;
+    pose.rotation = orthonormalised(pose.rotation);
+  }
+  return pose;
+}
+
+bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
+                     const RigidTransform& region, const PartSearchSettings& settings,
+                     RigidPart& part) noexcept {
+  const double moved = 0.6 * settings.limit;
+  std::array<std::size_t, kSeeds> seeds{};
+  const std::size_t seed_count = pick_seeds(patches, warp, k, region, moved, seeds);
+  double best = 0;
+  for (std::size_t s = 0; s < seed_count; ++s) {
+    Attempt attempt;
+    attempt.pose = warp.pose[seeds[s]];
+    for (int round = 0; round < kRounds; ++round) {
+      const PatchSet grown = grow(patches, warp, k, seeds[s], attempt.pose, region, settings.limit);
+      if (grown == attempt.set) break;
+      attempt.set = grown;
+      attempt.pose = fit_patches(patches, warp, attempt.set, attempt.pose);
+    }
+    measure(patches, warp, k, region, attempt);
+    if (attempt.points < settings.fewest_points) continue;
+    const double own = std::sqrt(attempt.own / attempt.points),
+                 off = std::sqrt(attempt.region / attempt.points);
+    if (off < moved || off < 2 * own || attempt.region - attempt.own <= best) continue;
+    best = attempt.region - attempt.own;
+    part.patches = attempt.set;
+    part.pose = attempt.pose;
+    part.points = attempt.points;
+    part.deviation = off;
+  }
+  return best > 0;
+}
+
+}  // namespace pliant
