@@ -23,7 +23,7 @@ struct Stiffness {
 /// An edge that crosses a border gives by `strain` of its length, or bends by `turn`, where a reading is off
 /// by its noise. The soft end stretches like fleece, the stiff end like leather.
 Stiffness stiffness_of(const ModelTables& model, double noise, double material) noexcept {
-  const double strain = 0.2 + 0.8 * material, turn = 0.5 + material;
+  const double strain = 0.1 + 0.4 * material, turn = 0.1 + 0.4 * material;
   const double give = strain * model.spacing / kUnitsPerMetre;
   return {noise * noise / (give * give), noise * noise / (turn * turn)};
 }
