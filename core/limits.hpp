@@ -20,6 +20,12 @@ inline constexpr int kMinFrameWidth = 32;
 inline constexpr int kMinFrameHeight = 24;
 /// Rigid regions followed at once; the base region is one of them.
 inline constexpr int kMaxRegions = 8;
+/// Patches of the model's surface that the warp moves; 25 points each for a model of 6,000. Indices fit 8
+/// bits.
+inline constexpr std::size_t kMaxPatches = 240;
+/// Borders between patches: on a surface a patch has six neighbours on average, and two patches share a
+/// border.
+inline constexpr std::size_t kMaxBorders = 5 * kMaxPatches;
 /// Half of the largest extent of a model that can be tracked: 16-bit coordinates at 1/16 mm.
 inline constexpr double kMaxModelHalfExtent = 2.0;
 /// Farthest depth used, metres: 16-bit depth at 1/8 mm.

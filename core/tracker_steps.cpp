@@ -48,8 +48,7 @@ void round_of_alignment(TrackerState& s, std::size_t points, std::int32_t gate, 
 
 /// The inlier test's limit at the base region's depth.
 std::int32_t inlier_limit(const TrackerState& s) noexcept {
-  const Vector3 where = s.regions[0].pose * s.tables.centre;
-  return s.tolerance.deformed(static_cast<std::int32_t>(where.z() * kUnitsPerMetre));
+  return s.tolerance.deformed(depth_of(s.regions[0].pose, s.tables.centre));
 }
 
 void count_regions(TrackerState& s) noexcept {
@@ -90,18 +89,19 @@ void align_regions(TrackerState& s) noexcept {
   round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
   round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
   round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier);
+  hold_steady(s.tables, s.surface, s.regions);
+  for (TrackedRegion& region : s.regions)
+    if (region.alive) region.motion = region.pose * region.last_pose.inverse();
 }
 
 void warp_surface(TrackerState& s) noexcept {
   WarpSettings settings;
+  settings.rounds = 1 + static_cast<int>(2 * s.work_level + 0.5);
   settings.material = s.settings.material;
   settings.inward = kMotionGate;
   settings.outward = kMotionGate / 2;  // a finger stands before the surface, a dent never does
   warp_patches(s.tables, s.patches, s.surface, s.projector, s.tolerance, s.regions, settings, s.points,
                s.warp);
-  hold_steady(s.tables, s.surface, s.regions);
-  for (TrackedRegion& region : s.regions)
-    if (region.alive) region.motion = region.pose * region.last_pose.inverse();
 }
 
 void label_points(TrackerState& s) noexcept {
@@ -112,7 +112,9 @@ void regroup_outliers(TrackerState& s) noexcept {
   RegroupSettings settings;
   settings.max_regions = s.settings.max_regions;
   settings.fewest_points = fewest_region_points(s);
-  if (regroup({s.tables, s.patches, s.warp, s.tolerance}, settings, s.regroup_state, s.regions, s.points))
+  const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
+  if (regroup({s.tables, s.patches, s.warp, sighting, s.tolerance}, settings, s.regroup_state, s.regions,
+              s.points))
     carry_homes_to_unseen(s.tables, s.points);
   count_regions(s);
   for (TrackedRegion& region : s.regions) {
@@ -171,10 +173,9 @@ bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pos
     gate = std::max(gate * 3 / 4, 2 * inlier_limit(s));
   }
   base.motion = RigidTransform();
-  s.warp.reset(base.pose);
   base.last_pose = base.pose;
+  s.warp.reset(base.pose);
   warp_surface(s);
-  base.motion = RigidTransform();
   label_points(s);
   count_regions(s);
   match_deformed(s);

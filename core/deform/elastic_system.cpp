@@ -1,7 +1,5 @@
 #include "core/deform/elastic_system.hpp"
 
-#include <Eigen/Geometry>
-
 namespace pliant {
 
 void ElasticSystem::clear(std::size_t patches) noexcept {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "core/deform/symmetric6.hpp"
 #include "core/track/patches.hpp"

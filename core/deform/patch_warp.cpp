@@ -1,9 +1,6 @@
 #include "core/deform/patch_warp.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 
 #include "core/fixed/integer_root.hpp"
 #include "core/track/associate.hpp"
@@ -12,8 +9,8 @@ namespace pliant {
 
 namespace {
 
-constexpr std::int32_t kCos75 = 4240;  // Q14
-/// Of all readings that a patch could have, the share that its region's pull is worth.
+/// Of all readings that a patch could have, the share that its region's pull is worth: enough to bring back
+/// what nobody sees, too little to hold what a few readings move.
 constexpr double kAnchorShare = 0.02;
 
 struct Stiffness {
@@ -62,7 +59,7 @@ struct Look {
   int step = 1;  // pixels between looks aside
 };
 
-constexpr int kLooksAside = 4;  // to each side: beyond, another part of the object is as likely
+constexpr int kLooksAside = 4;  // to each side, over the length of the inward gate
 
 /// The camera sees through a point at pixel (u, v): the object's edge has moved aside. The nearest reading of
 /// the object along the four directions of the picture tells where to.
@@ -89,7 +86,7 @@ bool find_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoi
   return any;
 }
 
-/// Adds the row of a reading `q` for a point `at` along `n` (Q14).
+/// Adds the row of a reading that lies `residual` (1/256 mm) from the point `at` along `n` (Q14).
 void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::int32_t weight,
              const IntPoint& centre, PlaneMoments& moments) noexcept {
   const std::int32_t x = at.x - centre.x, y = at.y - centre.y, z = at.z - centre.z;
@@ -112,7 +109,9 @@ void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoin
 }
 
 /// The integer kernel: every point that faces the camera, beside the reading of its pixel, into the moments
-/// of its patch about the patch's centre.
+/// of its patch about the patch's centre. Formats are those of PlaneMoments.
+/// Overflow bounds: gates <= 8191, so that a difference squared stays below 2^26 and three below 2^28; arms
+/// are at most a model's extent, 2^16, times Q14 normals: below 2^31 for the difference of two.
 [[gnu::noinline]] void gather(const Look& look, const PointState& points, PatchWarp& warp) noexcept {
   const ModelTables& model = look.model;
   for (std::size_t i = 0; i < model.size; ++i) {
@@ -151,13 +150,6 @@ void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
   }
 }
 
-/// Rotation vector from b to a, exact to second order: half of the skew part of a·bᵀ.
-Vector3 turn_between(const Matrix3& a, const Matrix3& b) noexcept {
-  Vector3 turn = Vector3::Zero();
-  for (int k = 0; k < 3; ++k) turn += 0.5 * Vector3(b.col(k)).cross(Vector3(a.col(k)));
-  return turn;
-}
-
 /// Weight of a spring that gives way beyond `scale`.
 double giving_way(double square, double scale) noexcept {
   const double w = scale * scale / (scale * scale + square);
@@ -180,7 +172,6 @@ void add_anchor(const PatchTables& patches, const RigidTransform& region, double
 constexpr double kFreeTurn = 0.5;  // radians
 
 void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWarp& warp) noexcept {
-  double energy = 0;
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
     const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
@@ -194,9 +185,7 @@ void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWa
     link.arm_a = at_a - a * patches.centres[border.a];
     link.arm_b = at_b - b * patches.centres[border.b];
     warp.system.add_link(link, at_a - at_b, turn);
-    energy += (at_a - at_b).squaredNorm();
   }
-  warp.energy = patches.border_count > 0 ? energy / static_cast<double>(patches.border_count) : 0;
 }
 
 /// How well readings fit a patch.
@@ -217,6 +206,11 @@ void measure(const Look& look, const PointState& points, PatchWarp& warp,
   }
 }
 
+/// What smoothing over nine pixels leaves of σ: residuals below it tell no place from another.
+constexpr double kSmoothedNoise = 0.35;
+/// Mean squares of a dozen readings differ by half of themselves by chance.
+constexpr double kByChance = 1.4;
+
 /// Patches that the readings put as well where their region is go back there: what slid along the surface
 /// unnoticed does not add up over the frames.
 void return_home(const Look& look, const RegionSet& regions, const PointState& points, double noise,
@@ -229,8 +223,9 @@ void return_home(const Look& look, const RegionSet& regions, const PointState& p
   measure(look, points, warp, home);
   for (std::size_t p = 0; p < look.patches.count; ++p) {
     const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
-    if (!as_many || home[p].square > std::max(1.1 * here[p].square, 0.04 * noise * noise))
-      warp.pose[p] = own[p];
+    const bool as_near = home[p].square <= std::max(kByChance * here[p].square,
+                                                    kSmoothedNoise * kSmoothedNoise * noise * noise);
+    if (!as_many || !as_near) warp.pose[p] = own[p];
   }
 }
 
@@ -247,7 +242,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
     warp.pose[p] = step[static_cast<std::size_t>(warp.home[p])] * warp.pose[p];
     warp.pose[p].rotation = orthonormalised(warp.pose[p].rotation);
   }
-  const auto z = static_cast<std::int32_t>((regions[0].pose * model.centre).z() * kUnitsPerMetre);
+  const std::int32_t z = depth_of(regions[0].pose, model.centre);
   const double noise = surface.sigma(z) / kUnitsPerMetre, limit = tolerance.deformed(z) / kUnitsPerMetre;
   const Stiffness stiffness = stiffness_of(model, noise, settings.material);
   Look look{model, patches, surface, projector, {}, 1};

@@ -24,7 +24,6 @@ struct PatchWarp {
   std::array<RigidTransform, kMaxPatches> pose;  ///< camera <- model, of each patch
   std::array<std::int8_t, kMaxPatches> home{};   ///< region of most of its points
   std::array<double, kMaxPatches> seen{};        ///< weighted readings of this frame
-  double energy = 0;                             ///< mean strain of the borders, metres squared
 
   // scratch
   std::array<PlaneMoments, kMaxPatches> moments;

@@ -64,7 +64,7 @@ void search_deformed(const ModelTables& model, const Surface& surface, const Pro
   if (!any) return;
   for (std::size_t i = 0; i < model.size; ++i) {
     if (points.label[i] != kDeformed || points.match[i] >= 0) continue;
-    IntPoint& p = points.position[i];
+    const IntPoint& p = points.position[i];
     IntPoint q;
     points.match[i] = nearest_free(surface, projector, p, radius, taken, q);
     if (points.match[i] < 0) continue;

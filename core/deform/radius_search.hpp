@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Sets `match`, `residual`, `position` and `offset` of the points labelled deformed that have no match: the
+/// Sets `match` and `residual` of the points labelled deformed that have no match: the
 /// nearest reading within `radius` (1/16 mm) of their position that no other point matched. Points without
 /// one stay. `taken`: one bit a pixel of the picture, scratch.
 void search_deformed(const ModelTables& model, const Surface& surface, const Projector& projector,

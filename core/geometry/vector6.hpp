@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "core/geometry/rigid_transform.hpp"
 
@@ -17,6 +18,13 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
   step.rotation = rotation_from_small_vector(x.head<3>());
   step.translation = centre + Vector3(x.tail<3>()) - step.rotation * centre;
   return step;
+}
+
+/// Rotation vector that turns b into a, exact to second order: half of the skew part of a·bᵀ.
+[[nodiscard]] inline Vector3 turn_between(const Matrix3& a, const Matrix3& b) noexcept {
+  Vector3 turn = Vector3::Zero();
+  for (int k = 0; k < 3; ++k) turn += 0.5 * Vector3(b.col(k)).cross(Vector3(a.col(k)));
+  return turn;
 }
 
 }  // namespace pliant

@@ -85,7 +85,6 @@ void align(const Surface& surface, const AlignSettings& settings, const PointSta
     TrackedRegion& region = regions[k];
     const Spread& spread = spreads[k];
     if (!region.alive || spread.count < kFewestCorrespondences) continue;
-    if (settings.only_region >= 0 && settings.only_region != static_cast<std::int8_t>(k)) continue;
     const IntPoint centre{static_cast<std::int32_t>(spread.x / spread.count),
                           static_cast<std::int32_t>(spread.y / spread.count),
                           static_cast<std::int32_t>(spread.z / spread.count)};

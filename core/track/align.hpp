@@ -12,7 +12,6 @@ struct AlignSettings {
   double prior_rotation =
       0.05;  ///< how far a region turns off its prediction, one standard deviation, radians
   double prior_translation = 0.01;  ///< and moves, metres
-  std::int8_t only_region = -1;     ///< -1: all
 };
 
 /// One Gauss–Newton step for every region with correspondences: Tukey weights at a scale from the median

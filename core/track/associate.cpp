@@ -7,16 +7,12 @@ namespace pliant {
 
 namespace {
 
-constexpr std::int32_t kCos75 = 4240;  // Q14
-
 /// What the kernel needs of regions and settings.
 struct Plan {
   std::array<FixedPose, limits::kMaxRegions> poses;
-  std::array<bool, limits::kMaxRegions> wanted{};
   std::size_t size = 0;
   std::int32_t gate = 0;  // 1/16 mm, at most 8191
   PixelSpan spacing;
-  bool check_normals = true, with_deformed = false;
 };
 
 /// The integer kernel, on its own so that it can be looked at.
@@ -26,7 +22,7 @@ struct Plan {
   std::size_t count = 0;
   for (std::size_t i = 0; i < plan.size; ++i) {
     const auto k = static_cast<std::size_t>(points.home[i]);
-    if (!plan.wanted[k] || (!plan.with_deformed && points.evidence[i] >= kEvidenceDeformed)) continue;
+    if (points.evidence[i] >= kEvidenceDeformed) continue;
     const IntPoint n = plan.poses[k].direction(model.nx[i], model.ny[i], model.nz[i]);
     const IntPoint p = plan.poses[k].point(model.x[i], model.y[i], model.z[i]);
     if (!faces_camera(p, n, kCos75)) continue;
@@ -37,7 +33,7 @@ struct Plan {
     const IntPoint q = surface.vertex(u, v, z8);
     const std::int32_t residual = plane_distance(q, p, n);
     if (std::abs(residual) > plan.gate * 16) continue;
-    if (plan.check_normals && !surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n)) continue;
+    if (!surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n)) continue;
     points.correspondences[count++] = {p,
                                        static_cast<std::int16_t>(n.x),
                                        static_cast<std::int16_t>(n.y),
@@ -54,16 +50,11 @@ struct Plan {
 void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
                const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept {
   Plan plan;
-  for (std::size_t k = 0; k < regions.size(); ++k) {
-    if (!regions[k].alive) continue;
-    plan.poses[k] = FixedPose(regions[k].pose, model.centre);
-    plan.wanted[k] = settings.only_region < 0 || settings.only_region == static_cast<std::int8_t>(k);
-  }
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (regions[k].alive) plan.poses[k] = FixedPose(regions[k].pose, model.centre);
   plan.size = std::min(settings.points, model.size);
   plan.gate = std::min(settings.gate, 8191);
   plan.spacing = surface.pixel_span(model.spacing / kUnitsPerMetre);
-  plan.check_normals = settings.check_normals;
-  plan.with_deformed = settings.with_deformed;
   points.correspondence_count = associate_points(model, surface, projector, plan, points);
 }
 

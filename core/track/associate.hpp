@@ -5,16 +5,17 @@
 
 namespace pliant {
 
+/// Cosine of the steepest view that still tells something of a surface, Q14.
+inline constexpr std::int32_t kCos75 = 4240;
+
 struct AssociateSettings {
-  std::size_t points = 0;        ///< the first so many model points are looked at: a uniform sampling
-  std::int32_t gate = 0;         ///< readings farther than this from the point are not taken, 1/16 mm
-  bool check_normals = true;     ///< readings whose surface faces another way are not taken
-  bool with_deformed = false;    ///< take points that count as deformed, too
-  std::int8_t only_region = -1;  ///< look at this region's points only; -1: all regions
+  std::size_t points = 0;  ///< the first so many model points are looked at: a uniform sampling
+  std::int32_t gate = 0;   ///< readings farther than this from the point are not taken, 1/16 mm
 };
 
 /// Fills `points.correspondences` in the order of the model's points. Points that face away (beyond 75° from
-/// the line of sight), and those that count as deformed (unless `with_deformed`), are left out.
+/// the line of sight), and those that count as deformed, are left out; readings whose surface faces
+/// another way are not taken.
 void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
                const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept;
 

@@ -49,8 +49,8 @@ void Projector::start(const Intrinsics& camera) noexcept {
   cx_ = rounded(camera.cx * 8) + 4;  // half a pixel, so that the shift rounds
   cy_ = rounded(camera.cy * 8) + 4;
   constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
-  widest_x_ = std::min(kFarthest, kMost / fx_);
-  widest_y_ = std::min(kFarthest, kMost / fy_);
+  widest_x_ = kMost / fx_;
+  widest_y_ = kMost / fy_;
   width_ = camera.width;
   height_ = camera.height;
 }

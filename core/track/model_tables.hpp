@@ -47,6 +47,11 @@ struct FixedPose {
   }
 };
 
+/// Depth of the model's centre under a pose (camera <- model), 1/16 mm.
+[[nodiscard]] inline std::int32_t depth_of(const RigidTransform& pose, const Vector3& centre) noexcept {
+  return static_cast<std::int32_t>((pose * centre).z() * kUnitsPerMetre);
+}
+
 /// Where points fall in the picture, in integers: focal lengths and centre in 1/8 pixel.
 class Projector {
  public:

@@ -1,6 +1,5 @@
 #include "core/track/part_search.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -113,11 +112,8 @@ RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp, co
       a.add_point_spring(w, at - middle);
       b.head<3>() += w * Vector3(at - middle).cross(gap);
       b.tail<3>() += w * gap;
-      Vector3 turn = Vector3::Zero();
-      for (int column = 0; column < 3; ++column)
-        turn += 0.5 * Vector3(pose.rotation.col(column)).cross(Vector3(warp.pose[p].rotation.col(column)));
       a.add_turn_spring(w * arm * arm);
-      b.head<3>() += w * arm * arm * turn;
+      b.head<3>() += w * arm * arm * turn_between(warp.pose[p].rotation, pose.rotation);
     }
     Factor6 factor;
     if (!factor.factorise(a)) return pose;
@@ -151,8 +147,6 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
     best = attempt.region - attempt.own;
     part.patches = attempt.set;
     part.pose = attempt.pose;
-    part.points = attempt.points;
-    part.deviation = off;
   }
   return best > 0;
 }

@@ -15,9 +15,7 @@ struct PartSearchSettings {
 
 struct RigidPart {
   PatchSet patches;
-  RigidTransform pose;   ///< camera <- model
-  double points = 0;     ///< seen, weighted
-  double deviation = 0;  ///< of its patches from the region's pose, root mean square, metres
+  RigidTransform pose;  ///< camera <- model
 };
 
 /// The largest such part of region `k`, whose pose is `region`. False when there is none.

@@ -5,15 +5,14 @@
 #include <cstdint>
 #include <span>
 
+#include "core/limits.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/track/model_tables.hpp"
 
 namespace pliant {
 
-/// Most patches of a model; 25 points each for a model of 6,000.
-inline constexpr std::size_t kMaxPatches = 240;
-/// Most borders between patches: a surface's patches have six neighbours on average, two patches a border.
-inline constexpr std::size_t kMaxBorders = 5 * kMaxPatches;
+using limits::kMaxBorders;
+using limits::kMaxPatches;
 
 /// A set of patches, one bit each.
 class PatchSet {
@@ -51,7 +50,7 @@ struct PatchTables {
   std::array<std::uint32_t, kMaxPatches> sizes{};  ///< points
   std::array<Vector3, kMaxPatches> centres;        ///< model frame, metres
   std::array<PatchBorder, kMaxBorders> borders;    ///< ascending by (a, b)
-  std::size_t border_count = 0;
+  std::size_t border_count = 0;  ///< at most kMaxBorders; further ones hold nothing together
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
   /// `queue`: scratch of the model's size.

@@ -1,21 +1,21 @@
 #include "core/track/regroup.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-
-#include "core/track/label.hpp"
 
 namespace pliant {
 
 namespace {
 
+/// Shares of the inlier limit by which one pose may explain readings worse than two before a region splits,
+/// and up to which two regions are one. The limit is 4 σ or more and a reading's mean error after smoothing a
+/// third of σ: below a tenth all is noise. The gap between the two keeps a region from coming and going.
+constexpr double kAsTwo = 0.22, kAsOne = 0.15;
 constexpr int kSwitchAfter = 2;  // frames in which a neighbouring region must suit a patch better
 
 double limit_at(const RegroupContext& context, const RigidTransform& pose) noexcept {
-  const Vector3 where = pose * context.model.centre;
-  return context.tolerance.deformed(static_cast<std::int32_t>(where.z() * kUnitsPerMetre)) / kUnitsPerMetre;
+  return context.tolerance.deformed(depth_of(pose, context.model.centre)) / kUnitsPerMetre;
 }
 
 /// Points of region `from`, all or those of one patch, become region `to`'s.
@@ -26,15 +26,14 @@ void give(const RegroupContext& context, std::int8_t from, std::int8_t to, int p
     points.home[i] = to;
     points.evidence[i] = 0;
     points.switching[i] = 0;
-    if (points.label[i] == from) points.label[i] = to;
   }
   for (std::size_t p = 0; p < context.patches.count; ++p)
     if (context.warp.home[p] == from && (patch < 0 || static_cast<int>(p) == patch))
       context.warp.home[p] = to;
 }
 
-void dissolve(const RegroupContext& context, RegionSet& regions, PointState& points, std::size_t k,
-              std::int8_t into) noexcept {
+void dissolve(const RegroupContext& context, RegroupState& state, RegionSet& regions, PointState& points,
+              std::size_t k, std::int8_t into) noexcept {
   const auto id = static_cast<std::int8_t>(k);
   give(context, id, into, -1, points);
   const std::int8_t parent = regions[k].parent;
@@ -42,11 +41,14 @@ void dissolve(const RegroupContext& context, RegionSet& regions, PointState& poi
     if (regions[r].alive && regions[r].parent == id)
       regions[r].parent = static_cast<std::size_t>(into) == r ? parent : into;
   regions[k] = TrackedRegion();
+  state.suspected[k] = 0;
+  for (std::size_t r = 0; r < regions.size(); ++r) state.alike[k][r] = state.alike[r][k] = 0;
 }
 
-/// Patches go over to the neighbouring region whose motion is theirs.
-void switch_patches(const RegroupContext& context, RegroupState& state, const RegionSet& regions,
+/// Patches go over to the neighbouring region whose motion is theirs. True when one did.
+bool switch_patches(const RegroupContext& context, RegroupState& state, const RegionSet& regions,
                     PointState& points) noexcept {
+  bool any = false;
   for (std::size_t p = 0; p < context.patches.count; ++p) {
     const std::int8_t home = context.warp.home[p];
     std::int8_t best = home;
@@ -54,8 +56,9 @@ void switch_patches(const RegroupContext& context, RegroupState& state, const Re
       const double limit = limit_at(context, regions[static_cast<std::size_t>(home)].pose);
       const double own =
           patch_deviation(context.patches, context.warp, p, regions[static_cast<std::size_t>(home)].pose);
+      // twice as near as the own region's motion, and within half of the inlier limit
       double least = std::min(0.25 * limit * limit, 0.25 * own);
-      if (own > 0.1 * limit * limit)
+      if (own > 0.1 * limit * limit)  // about a third of the limit: below, both may be right
         for (std::size_t q = 0; q < context.patches.count; ++q) {
           const std::int8_t other = context.warp.home[q];
           if (other == home || other == best || !context.patches.neighbours[p].has(q)) continue;
@@ -70,20 +73,35 @@ void switch_patches(const RegroupContext& context, RegroupState& state, const Re
     if (state.switching[p] < kSwitchAfter) continue;
     state.switching[p] = 0;
     give(context, home, best, static_cast<int>(p), points);
+    any = true;
   }
+  return any;
 }
 
-/// How far two motions part on the patches of region `k`, root mean square, metres.
-double parting(const RegroupContext& context, std::int8_t k, const RigidTransform& a,
-               const RigidTransform& b) noexcept {
-  double sum = 0, weight = 0;
-  for (std::size_t p = 0; p < context.patches.count; ++p) {
-    if (context.warp.home[p] != k) continue;
-    sum += context.patches.sizes[p] *
-           (a * context.patches.centres[p] - b * context.patches.centres[p]).squaredNorm();
-    weight += context.patches.sizes[p];
+/// How well two poses explain what is seen of some points: mean distance from the readings along the normal,
+/// no more than the inlier limit each, as a share of that limit.
+struct Comparison {
+  double own = 1, other = 1;
+};
+
+/// Compares on the points of region `k`, of `patches` only if given. What slides along the surface costs
+/// nothing: only what the readings tell apart does.
+Comparison compare(const RegroupContext& context, const PointState& points, std::int8_t k,
+                   const PatchSet* patches, const RigidTransform& own, const RigidTransform& other) noexcept {
+  const FixedPose own_pose(own, context.model.centre), other_pose(other, context.model.centre);
+  const std::int32_t limit = context.tolerance.deformed(depth_of(own, context.model.centre));
+  std::int64_t own_sum = 0, other_sum = 0, count = 0;
+  for (std::size_t i = 0; i < context.model.size; ++i) {
+    if (points.home[i] != k || (patches != nullptr && !patches->has(context.patches.patch_of[i]))) continue;
+    const Sighting::Look a = context.sighting.look(i, own_pose), b = context.sighting.look(i, other_pose);
+    if (a.sight != Sight::agrees && b.sight != Sight::agrees) continue;
+    own_sum += a.sight == Sight::agrees ? std::min(std::abs(a.residual), limit) : limit;
+    other_sum += b.sight == Sight::agrees ? std::min(std::abs(b.residual), limit) : limit;
+    ++count;
   }
-  return weight > 0 ? std::sqrt(sum / weight) : 0;
+  if (count == 0) return {};
+  const double scale = 1.0 / (static_cast<double>(count) * limit);
+  return {static_cast<double>(own_sum) * scale, static_cast<double>(other_sum) * scale};
 }
 
 bool adjacent(const RegroupContext& context, std::int8_t a, std::int8_t b) noexcept {
@@ -101,7 +119,7 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
            RegionSet& regions, PointState& points) noexcept {
   for (std::size_t k = 1; k < regions.size(); ++k)
     if (regions[k].alive && regions[k].members < settings.fewest_points / 2) {
-      dissolve(context, regions, points, k, regions[k].parent);
+      dissolve(context, state, regions, points, k, regions[k].parent);
       return true;
     }
   for (std::size_t b = 1; b < regions.size(); ++b)
@@ -113,13 +131,18 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
         continue;
       }
       const bool a_larger = regions[a].members >= regions[b].members;
-      const bool fits = parting(context, a_larger ? ib : ia, regions[a].pose, regions[b].pose) <=
-                        0.5 * limit_at(context, regions[a].pose);
+      const Comparison on_smaller = compare(context, points, a_larger ? ib : ia, nullptr,
+                                            regions[a_larger ? b : a].pose, regions[a_larger ? a : b].pose);
+      const bool fits = on_smaller.other - on_smaller.own <= kAsOne;
       alike = fits ? static_cast<std::uint8_t>(alike + 1) : std::uint8_t{0};
       if (alike < settings.merge_after) continue;
       alike = 0;
-      if (!a_larger) regions[a].pose = regions[b].pose;
-      dissolve(context, regions, points, b, ia);
+      if (!a_larger) {
+        regions[a].pose = regions[b].pose;
+        regions[a].last_pose = regions[b].last_pose;
+        regions[a].motion = regions[b].motion;
+      }
+      dissolve(context, state, regions, points, b, ia);
       return true;
     }
   return false;
@@ -176,26 +199,15 @@ void split(const RegroupContext& context, std::int8_t k, std::size_t slot, const
   const RigidTransform rest_pose = fit_patches(context.patches, context.warp, rest, old.pose);
   old.pose = part_stays ? found.pose : rest_pose;
   fresh.pose = part_stays ? rest_pose : found.pose;
-  const FixedPose poses[2] = {FixedPose(old.pose, context.model.centre),
-                              FixedPose(fresh.pose, context.model.centre)};
+  fresh.from_parent = old.pose.inverse() * fresh.pose;  // none of its points bears its label yet
   for (std::size_t i = 0; i < context.model.size; ++i) {
     if (points.home[i] != k) continue;
-    const bool moves = part.has(context.patches.patch_of[i]) != part_stays;
     const bool in = part.has(context.patches.patch_of[i]);
-    if (moves) points.home[i] = static_cast<std::int8_t>(slot);
+    if (in != part_stays) points.home[i] = static_cast<std::int8_t>(slot);
     if (!in) continue;
     points.switching[i] = 0;
     points.evidence[i] = 0;
-    if (points.label[i] == kNotObserved) continue;
-    points.label[i] = points.home[i];
-    points.position[i] =
-        poses[moves ? 1 : 0].point(context.model.x[i], context.model.y[i], context.model.z[i]);
-    points.offset[i] = {};
   }
-  if (part_stays)
-    for (std::size_t i = 0; i < context.model.size; ++i)
-      if (points.home[i] == static_cast<std::int8_t>(slot) && points.label[i] == k)
-        points.label[i] = points.home[i];
   for (std::size_t p = 0; p < context.patches.count; ++p)
     if (context.warp.home[p] == k && part.has(p) != part_stays)
       context.warp.home[p] = static_cast<std::int8_t>(slot);
@@ -211,7 +223,12 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
     search.limit = limit_at(context, region.pose);
     const auto id = static_cast<std::int8_t>(k);
     RigidPart part;
-    if (!find_rigid_part(context.patches, context.warp, id, region.pose, search, part)) {
+    const auto shows_two = [&] {
+      if (!find_rigid_part(context.patches, context.warp, id, region.pose, search, part)) return false;
+      const Comparison on_part = compare(context, points, id, &part.patches, part.pose, region.pose);
+      return on_part.other - on_part.own >= kAsTwo;
+    };
+    if (!shows_two()) {
       state.suspected[k] = 0;
     } else if (++state.suspected[k] >= settings.split_after) {
       state.suspected[k] = 0;
@@ -222,40 +239,32 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
   return false;
 }
 
-}  // namespace
-
-Joint joint_of(const ModelTables& model, const PointState& points, std::int8_t region,
-               std::int8_t neighbour) noexcept {
-  std::int64_t x = 0, y = 0, z = 0;
-  Joint joint;
-  for (std::size_t i = 0; i < model.size; ++i) {
-    if (points.home[i] != region) continue;
-    for (const std::uint16_t n : model.model->neighbours(i)) {
-      if (n >= model.size || points.home[n] != neighbour) continue;
-      x += model.x[i] + model.x[n];
-      y += model.y[i] + model.y[n];
-      z += model.z[i] + model.z[n];
-      ++joint.edges;
-    }
+/// Points that are with their region are with the one that they belong to now, where it puts them.
+void settle(const RegroupContext& context, const RegionSet& regions, PointState& points) noexcept {
+  std::array<FixedPose, limits::kMaxRegions> poses;
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (regions[k].alive) poses[k] = FixedPose(regions[k].pose, context.model.centre);
+  for (std::size_t i = 0; i < context.model.size; ++i) {
+    if (points.label[i] < 0) continue;
+    points.label[i] = points.home[i];
+    points.position[i] = poses[static_cast<std::size_t>(points.home[i])].point(
+        context.model.x[i], context.model.y[i], context.model.z[i]);
   }
-  if (joint.edges > 0) {
-    const double scale = 0.5 / (joint.edges * kUnitsPerMetre);
-    joint.centre = model.centre +
-                   Vector3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)) * scale;
-  }
-  return joint;
 }
+
+}  // namespace
 
 bool regroup(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
              RegionSet& regions, PointState& points) noexcept {
   for (TrackedRegion& region : regions) region.members = 0;
   for (std::size_t i = 0; i < context.model.size; ++i)
     ++regions[static_cast<std::size_t>(points.home[i])].members;
-  switch_patches(context, state, regions, points);
-  const bool merged = merge(context, settings, state, regions, points);
-  const std::size_t slot = free_slot(regions, settings.max_regions);
-  if (slot == 0 || merged) return merged;
-  return split_parts(context, settings, slot, state, regions, points);
+  const bool switched = switch_patches(context, state, regions, points);
+  bool changed = merge(context, settings, state, regions, points);
+  if (const std::size_t slot = free_slot(regions, settings.max_regions); slot != 0 && !changed)
+    changed = split_parts(context, settings, slot, state, regions, points);
+  if (switched || changed) settle(context, regions, points);
+  return changed;
 }
 
 }  // namespace pliant

@@ -4,6 +4,7 @@
 
 #include "core/track/part_search.hpp"
 #include "core/track/patches.hpp"
+#include "core/track/sight.hpp"
 #include "core/track/track_state.hpp"
 
 namespace pliant {
@@ -20,23 +21,16 @@ struct RegroupState {
   std::array<std::uint8_t, kMaxPatches>
       switching{};  ///< frames in a row in which a neighbour suited a patch better
   std::array<std::array<std::uint8_t, limits::kMaxRegions>, limits::kMaxRegions>
-      alike{};                                       ///< frames in a row
+      alike{};  ///< frames in a row in which two regions moved alike, [lower id][higher id]
   std::array<int, limits::kMaxRegions> suspected{};  ///< frames in a row in which a region showed two motions
 };
-
-/// Where a region hangs on its neighbours.
-struct Joint {
-  std::uint32_t edges = 0;           ///< of the surface graph that cross the border
-  Vector3 centre = Vector3::Zero();  ///< of the border, model frame, metres
-};
-[[nodiscard]] Joint joint_of(const ModelTables& model, const PointState& points, std::int8_t region,
-                             std::int8_t neighbour) noexcept;
 
 /// Everything the regrouping looks at.
 struct RegroupContext {
   const ModelTables& model;
   const PatchTables& patches;
   PatchWarp& warp;  ///< its homes follow
+  const Sighting& sighting;
   const Tolerance& tolerance;
 };
 

@@ -26,8 +26,9 @@ std::int64_t Histogram::quantile(double q) const noexcept {
     if (seen <= rank) continue;
     constexpr std::size_t kSub = std::size_t{1} << kSubBits;
     const std::size_t shift = bucket < 2 * kSub ? 0 : (bucket >> kSubBits) - 1;
-    const std::size_t low = (bucket - (shift << kSubBits)) << shift;
-    const std::size_t middle = low + ((std::size_t{1} << shift) >> 1);
+    // 64 bits on every machine: 32 would hold four seconds only.
+    const std::uint64_t low = std::uint64_t{bucket - (shift << kSubBits)} << shift;
+    const std::uint64_t middle = low + ((std::uint64_t{1} << shift) >> 1);
     return std::min(max_, static_cast<std::int64_t>(middle));
   }
   return max_;

@@ -26,13 +26,10 @@ class Associate : public ::testing::Test {
   }
   static TrackScene& scene() { return *shared_; }
 
-  std::size_t run(std::int32_t gate, std::size_t most = SIZE_MAX, bool with_deformed = false,
-                  std::int8_t only = -1) {
+  std::size_t run(std::int32_t gate, std::size_t most = SIZE_MAX) {
     AssociateSettings settings;
     settings.points = most;
     settings.gate = gate;
-    settings.with_deformed = with_deformed;
-    settings.only_region = only;
     associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
     return scene().points.correspondence_count;
   }
@@ -95,20 +92,22 @@ TEST_F(Associate, DoesNotMatchWhatHidesTheObject) {
   for (const Correspondence& c : scene().points.correspondences.first(count)) EXPECT_GT(c.point.z, 9000);
 }
 
-TEST_F(Associate, LeavesOutDeformedPointsAndOtherRegions) {
+TEST_F(Associate, LeavesOutDeformedPoints) {
   const std::size_t all = run(20 * kUnitsPerMillimetre);
   for (std::size_t i = 0; i < scene().tables.size; i += 2) scene().points.evidence[i] = kEvidenceDeformed;
   const std::size_t half = run(20 * kUnitsPerMillimetre);
   EXPECT_LT(half, all * 6 / 10);
-  EXPECT_EQ(run(20 * kUnitsPerMillimetre, SIZE_MAX, true), all);
+  EXPECT_GT(half, all * 4 / 10);
+  for (const Correspondence& c : scene().points.correspondences.first(half)) EXPECT_EQ(c.index % 2, 1);
+}
+
+TEST_F(Associate, TakesEachPointUnderItsOwnRegion) {
+  const std::size_t all = run(20 * kUnitsPerMillimetre);
   scene().regions[1] = scene().regions[0];
   for (std::size_t i = 0; i < 600; ++i) scene().points.home[i] = 1;
-  const std::size_t both = run(20 * kUnitsPerMillimetre, SIZE_MAX, true);
-  EXPECT_EQ(both, all);
-  const std::size_t base = run(20 * kUnitsPerMillimetre, SIZE_MAX, true, 0);
-  const std::size_t part = run(20 * kUnitsPerMillimetre, SIZE_MAX, true, 1);
-  EXPECT_EQ(base + part, all);
-  for (const Correspondence& c : scene().points.correspondences.first(part)) EXPECT_EQ(c.region, 1);
+  ASSERT_EQ(run(20 * kUnitsPerMillimetre), all);
+  for (const Correspondence& c : scene().points.correspondences.first(all))
+    ASSERT_EQ(c.region, c.index < 600 ? 1 : 0);
 }
 
 TEST_F(Associate, FindsNothingInAnEmptyPictureOrOutside) {

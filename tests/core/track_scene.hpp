@@ -59,10 +59,23 @@ class TrackScene {
       align(surface, align_settings, points, regions);
     }
   }
+  static WarpSettings warp_settings() {
+    WarpSettings settings;
+    settings.inward = 24 * kUnitsPerMillimetre;
+    settings.outward = 12 * kUnitsPerMillimetre;
+    return settings;
+  }
+  void warp_now(const WarpSettings& settings = warp_settings()) {
+    warp_patches(tables, patches, surface, projector, tolerance, regions, settings, points, *warp);
+  }
   /// With a surface that the base region alone moves.
   SightCounts label_now() {
     warp->reset(regions[0].pose);
     for (FixedPose& fixed : warp->fixed) fixed = FixedPose(regions[0].pose, tables.centre);
+    return look_now();
+  }
+  /// With the surface where the warp has it.
+  SightCounts look_now() {
     return label({tables, patches, *warp, surface, projector, tolerance}, regions, points);
   }
   [[nodiscard]] Vector3 rest(std::size_t i) const {
