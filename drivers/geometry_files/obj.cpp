@@ -23,9 +23,9 @@ bool resolve(std::string_view word, std::size_t count, std::uint32_t& index) {
   std::int64_t number = 0;
   if (!to_integer(word, number)) return false;
   const auto size = static_cast<std::int64_t>(count);
-  const std::int64_t place = number < 0 && number >= -size ? size + number : number - 1;
-  if (place < 0 || place >= size) return false;
-  index = static_cast<std::uint32_t>(place);
+  if (number == 0 || number < -size || number > size)
+    return false;  // before any sum: it is any 64-bit number
+  index = static_cast<std::uint32_t>(number < 0 ? size + number : number - 1);
   return true;
 }
 

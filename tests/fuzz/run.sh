@@ -1,11 +1,12 @@
 #!/bin/bash
-# tests/fuzz/run.sh SECONDS [BUILD]: runs every fuzz target of BUILD (default build/fuzz) for its share of SECONDS,
-# beginning with the corpus in the repository. New inputs go to build/fuzz-corpus, findings to build/fuzz-crashes.
-# Fails on the first finding.
+# tests/fuzz/run.sh SECONDS [SEED]: runs every fuzz target of build/fuzz for its share of SECONDS, beginning with the
+# corpus in the repository. New inputs go to build/fuzz-corpus, findings to build/fuzz-crashes. Fails on the first
+# finding. With a SEED the inputs are the same in every run; without one they are new each time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-seconds=${1:?usage: tests/fuzz/run.sh SECONDS [BUILD]}
-build=${2:-build/fuzz}
+seconds=${1:?usage: tests/fuzz/run.sh SECONDS [SEED]}
+seed=${2:-0}
+build=build/fuzz
 mapfile -t programs < <(find "$build/tests/fuzz" -maxdepth 1 -type f -executable -name '*_fuzz' | sort)
 [ ${#programs[@]} -gt 0 ] || { echo "no fuzz target in $build: cmake --preset fuzz && cmake --build $build --target fuzzers" >&2; exit 1; }
 share=$((seconds / ${#programs[@]} > 0 ? seconds / ${#programs[@]} : 1))
@@ -14,7 +15,7 @@ for program in "${programs[@]}"; do
   name=$(basename "$program" _fuzz)
   mkdir -p "build/fuzz-corpus/$name"
   echo "== $name, $share s"
-  "$program" -max_total_time="$share" -timeout=20 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
+  "$program" -seed="$seed" -max_total_time="$share" -timeout=20 -rss_limit_mb=2048 -verbosity=0 -print_final_stats=1 \
     -artifact_prefix="build/fuzz-crashes/$name-" "build/fuzz-corpus/$name" "tests/fuzz/corpus/$name" ||
     { echo "$name: the input is in build/fuzz-crashes" >&2; exit 1; }
 done

@@ -45,7 +45,8 @@ TEST(Obj, SaysWhatIsWrongAndWhere) {
   EXPECT_TRUE(mentions(error_of(parse_obj, "v 0 0 0\nv 0 0\n"), "line 2: a vertex needs three numbers"));
   EXPECT_TRUE(mentions(error_of(parse_obj, "vn 0 x 0\n"), "line 1: a normal"));
   EXPECT_TRUE(mentions(error_of(parse_obj, "v 0 0 0\nf 1 1\n"), "line 2: a face needs three"));
-  for (const char* corner : {"0", "2", "-2", "x", "", "99999999999999999999", "1.5"}) {
+  for (const char* corner : {"0", "2", "-2", "x", "", "99999999999999999999", "1.5", "9223372036854775807",
+                             "-9223372036854775808"}) {
     const std::string text = "v 0 0 0\nf 1 1 " + std::string(corner) + "/\n";
     EXPECT_TRUE(mentions(error_of(parse_obj, text), "line 2: ")) << corner;
   }
