@@ -7,6 +7,7 @@
 #include "core/track/associate.hpp"
 #include "core/track/predict.hpp"
 #include "core/track/steady.hpp"
+#include "core/track/undecided.hpp"
 #include "core/tracker_state.hpp"
 
 namespace pliant {
@@ -83,12 +84,13 @@ void predict_regions(TrackerState& s) noexcept {
 void align_regions(TrackerState& s) noexcept {
   choose_still_or_moving(s.tables, s.surface, s.projector, s.points, 512, s.regions);
   finish_stage(s, Stage::predict);
-  // Last rounds trust only what the inlier test will call rigid: a part that moved on must not drag the rest.
+  // Last rounds trust only what fits well within what the inlier test will call rigid: a part that moved on,
+  // or a bend, must not drag the rest.
   const std::int32_t inlier = inlier_limit(s);
   round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, kMotionGate);
   round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
   round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
-  round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier);
+  for (int i = 0; i < 2; ++i) round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier / 2);
   hold_steady(s.tables, s.surface, s.regions);
   for (TrackedRegion& region : s.regions)
     if (region.alive) region.motion = region.pose * region.last_pose.inverse();
@@ -105,6 +107,8 @@ void warp_surface(TrackerState& s) noexcept {
 }
 
 void label_points(TrackerState& s) noexcept {
+  const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
+  settle_undecided(s.tables, sighting, s.regions, s.tolerance, s.points);
   s.counts = label({s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance}, s.regions, s.points);
 }
 

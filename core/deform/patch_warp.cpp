@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/fixed/integer_root.hpp"
+#include "core/track/aside.hpp"
 #include "core/track/associate.hpp"
 
 namespace pliant {
@@ -12,6 +12,12 @@ namespace {
 /// Of all readings that a patch could have, the share that its region's pull is worth: enough to bring back
 /// what nobody sees, too little to hold what a few readings move.
 constexpr double kAnchorShare = 0.02;
+/// The same for a patch that its readings put where its region is: half of what its own readings weigh, since
+/// along the surface they do not hold it, and springs would drag it after a part that moves.
+constexpr double kHoldShare = 0.5;
+/// What is left of a spring between two regions: they were told apart because they move as at a joint. Enough
+/// to keep patches together that nobody sees.
+constexpr double kJointShare = 0.01;
 
 struct Stiffness {
   double stretch = 0, bend = 0;  // of one crossing edge
@@ -59,33 +65,6 @@ struct Look {
   int step = 1;  // pixels between looks aside
 };
 
-constexpr int kLooksAside = 4;  // to each side, over the length of the inward gate
-
-/// The camera sees through a point at pixel (u, v): the object's edge has moved aside. The nearest reading of
-/// the object along the four directions of the picture tells where to.
-bool find_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoint& n,
-                IntPoint& found) noexcept {
-  std::int64_t best = static_cast<std::int64_t>(look.gates.inward) * look.gates.inward;
-  bool any = false;
-  constexpr std::array<std::array<int, 2>, 4> kDirections = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  for (const auto& direction : kDirections)
-    for (int k = 1; k <= kLooksAside; ++k) {
-      const int uu = u + direction[0] * k * look.step, vv = v + direction[1] * k * look.step;
-      const std::uint16_t z8 = look.surface.depth(uu, vv);
-      const std::int32_t gap = 2 * z8 - at.z;
-      if (z8 == 0 || gap > look.gates.inward || -gap > look.gates.outward) continue;
-      const IntPoint q = look.surface.vertex(uu, vv, z8);
-      const std::int64_t x = q.x - at.x, y = q.y - at.y, z = q.z - at.z, square = x * x + y * y + z * z;
-      if (square < best && look.surface.faces(uu, vv, Surface::normal_step(z8, look.gates.spacing), n)) {
-        best = square;
-        found = q;
-        any = true;
-      }
-      break;  // what lies beyond the first is farther
-    }
-  return any;
-}
-
 /// Adds the row of a reading that lies `residual` (1/256 mm) from the point `at` along `n` (Q14).
 void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::int32_t weight,
              const IntPoint& centre, PlaneMoments& moments) noexcept {
@@ -97,15 +76,11 @@ void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::
 
 void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoint& n, const IntPoint& centre,
                PlaneMoments& moments) noexcept {
-  IntPoint q;
-  if (!find_aside(look, u, v, at, n, q)) return;
-  const IntPoint d{q.x - at.x, q.y - at.y, q.z - at.z};
-  const auto length =
-      static_cast<std::int32_t>(integer_sqrt(static_cast<std::uint32_t>(d.x * d.x + d.y * d.y + d.z * d.z)));
-  if (length == 0) return;
-  const std::int32_t w = tukey_weight(length, look.gates.inward);
-  add_row(at, {d.x * 16384 / length, d.y * 16384 / length, d.z * 16384 / length}, length * 16, w, centre,
-          moments);
+  Aside aside;
+  const AsideReach reach{look.gates.inward, look.gates.outward, look.step, look.gates.spacing};
+  if (find_aside(look.surface, reach, u, v, at, n, aside))
+    add_row(at, aside.direction, aside.distance * 16, tukey_weight(aside.distance, look.gates.inward), centre,
+            moments);
 }
 
 /// The integer kernel: every point that faces the camera, beside the reading of its pixel, into the moments
@@ -160,7 +135,8 @@ void add_anchor(const PatchTables& patches, const RigidTransform& region, double
                 PatchWarp& warp) noexcept {
   const RigidTransform& pose = warp.pose[p];
   const Vector3 gap = region * patches.centres[p] - pose * patches.centres[p];
-  const double k = kAnchorShare * patches.sizes[p] * giving_way(gap.squaredNorm(), limit);
+  const double share = warp.held[p] ? kHoldShare : kAnchorShare;
+  const double k = share * patches.sizes[p] * giving_way(gap.squaredNorm(), limit);
   const double k_turn = k * 0.5 * patches.radius * patches.radius;
   warp.system.own(p).add_shift_spring(k);
   warp.system.own(p).add_turn_spring(k_turn);
@@ -182,6 +158,10 @@ void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWa
     link.b = border.b;
     link.stretch = stiffness.stretch * border.edges;
     link.bend = stiffness.bend * border.edges * giving_way(turn.squaredNorm(), kFreeTurn);
+    if (warp.home[border.a] != warp.home[border.b]) {
+      link.stretch *= kJointShare;
+      link.bend *= kJointShare;
+    }
     link.arm_a = at_a - a * patches.centres[border.a];
     link.arm_b = at_b - b * patches.centres[border.b];
     warp.system.add_link(link, at_a - at_b, turn);
@@ -212,12 +192,14 @@ constexpr double kSmoothedNoise = 0.35;
 constexpr double kByChance = 1.4;
 
 /// Patches that the readings put as well where their region is go back there: what slid along the surface
-/// unnoticed does not add up over the frames.
+/// unnoticed does not add up over the frames. Not so beside a patch that must be elsewhere: what moves takes
+/// its neighbours along, whose readings may not show it.
 void return_home(const Look& look, const RegionSet& regions, const PointState& points, double noise,
                  PatchWarp& warp) noexcept {
   std::array<Fit, kMaxPatches> here, home;
   measure(look, points, warp, here);
   const std::array<RigidTransform, kMaxPatches> own = warp.pose;
+  std::array<bool, kMaxPatches> fits{};
   for (std::size_t p = 0; p < look.patches.count; ++p)
     warp.pose[p] = regions[static_cast<std::size_t>(warp.home[p])].pose;
   measure(look, points, warp, home);
@@ -225,7 +207,14 @@ void return_home(const Look& look, const RegionSet& regions, const PointState& p
     const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
     const bool as_near = home[p].square <= std::max(kByChance * here[p].square,
                                                     kSmoothedNoise * kSmoothedNoise * noise * noise);
-    if (!as_many || !as_near) warp.pose[p] = own[p];
+    fits[p] = as_many && as_near;
+  }
+  for (std::size_t p = 0; p < look.patches.count; ++p) {
+    warp.held[p] = fits[p];
+    for (std::size_t q = 0; q < look.patches.count && warp.held[p]; ++q)
+      if (look.patches.neighbours[p].has(q) && warp.home[q] == warp.home[p] && here[q].weight > 0)
+        warp.held[p] = fits[q];
+    if (!warp.held[p]) warp.pose[p] = own[p];
   }
 }
 

@@ -24,6 +24,7 @@ struct PatchWarp {
   std::array<RigidTransform, kMaxPatches> pose;  ///< camera <- model, of each patch
   std::array<std::int8_t, kMaxPatches> home{};   ///< region of most of its points
   std::array<double, kMaxPatches> seen{};        ///< weighted readings of this frame
+  std::array<bool, kMaxPatches> held{};          ///< is in this frame where its region puts it
 
   // scratch
   std::array<PlaneMoments, kMaxPatches> moments;

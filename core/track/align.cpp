@@ -91,8 +91,10 @@ void align(const Surface& surface, const AlignSettings& settings, const PointSta
     // 1.4826 · median is σ of a normal distribution; Tukey's constant is 4.685
     const std::int32_t noise = surface.sigma(centre.z);
     region.scale = std::max((spread.median() * 95) >> 6, noise / 2);
+    // never narrower than Tukey's width at what smoothing leaves of σ, a third
+    const std::int32_t narrowest = noise * 8 / 5;
     const std::int32_t limit =
-        std::clamp((region.scale * 300) >> 6, 3 * noise, std::max(settings.widest, 3 * noise)) * 16;
+        std::clamp((region.scale * 300) >> 6, narrowest, std::max(settings.widest, narrowest)) * 16;
 
     const PlaneMoments moments = region_moments(all, static_cast<std::int8_t>(k), centre, limit);
     if (moments.rows < kFewestCorrespondences) continue;

@@ -8,7 +8,7 @@
 namespace pliant {
 
 struct AlignSettings {
-  std::int32_t widest = 0;  ///< readings farther off than this weigh nothing, 1/16 mm; at least 3 σ
+  std::int32_t widest = 0;  ///< readings farther off than this weigh nothing, 1/16 mm; at least 1.6 σ
   double prior_rotation =
       0.05;  ///< how far a region turns off its prediction, one standard deviation, radians
   double prior_translation = 0.01;  ///< and moves, metres

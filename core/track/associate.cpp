@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/track/aside.hpp"
+
 namespace pliant {
 
 namespace {
@@ -13,7 +15,22 @@ struct Plan {
   std::size_t size = 0;
   std::int32_t gate = 0;  // 1/16 mm, at most 8191
   PixelSpan spacing;
+
+  [[nodiscard]] AsideReach aside_at(const Projector& projector, std::int32_t z) const noexcept {
+    return {gate, gate, std::max(1, projector.pixels(gate, z) / kLooksAside), spacing};
+  }
 };
+
+Correspondence correspondence(const IntPoint& p, const IntPoint& n, std::size_t i, std::int32_t residual,
+                              std::size_t region) noexcept {
+  return {p,
+          static_cast<std::int16_t>(n.x),
+          static_cast<std::int16_t>(n.y),
+          static_cast<std::int16_t>(n.z),
+          static_cast<std::uint16_t>(i),
+          residual,
+          static_cast<std::int8_t>(region)};
+}
 
 /// The integer kernel, on its own so that it can be looked at.
 [[gnu::noinline]] std::size_t associate_points(const ModelTables& model, const Surface& surface,
@@ -29,18 +46,18 @@ struct Plan {
     int u = 0, v = 0;
     if (!projector.project(p, u, v)) continue;
     const std::uint16_t z8 = surface.depth_at(u, v);
-    if (z8 == 0 || std::abs(2 * z8 - p.z) > plan.gate) continue;
+    if (z8 == 0 || 2 * z8 - p.z > plan.gate) {
+      Aside aside;
+      if (k != 0 && find_aside(surface, plan.aside_at(projector, p.z), u, v, p, n, aside))
+        points.correspondences[count++] = correspondence(p, aside.direction, i, aside.distance * 16, k);
+      continue;
+    }
+    if (p.z - 2 * z8 > plan.gate) continue;
     const IntPoint q = surface.vertex(u, v, z8);
     const std::int32_t residual = plane_distance(q, p, n);
     if (std::abs(residual) > plan.gate * 16) continue;
     if (!surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n)) continue;
-    points.correspondences[count++] = {p,
-                                       static_cast<std::int16_t>(n.x),
-                                       static_cast<std::int16_t>(n.y),
-                                       static_cast<std::int16_t>(n.z),
-                                       static_cast<std::uint16_t>(i),
-                                       residual,
-                                       static_cast<std::int8_t>(k)};
+    points.correspondences[count++] = correspondence(p, n, i, residual, k);
   }
   return count;
 }

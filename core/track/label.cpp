@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
+#include "core/fixed/integer_root.hpp"
 #include "core/track/sight.hpp"
 
 namespace pliant {
@@ -85,11 +87,14 @@ struct Verdict {
   bool off = false;           ///< speaks for its being off its region
   bool doubtful = false;      ///< but where its region puts it, there is a surface, too
   IntPoint rigid, warped;     ///< the two places
-  std::int32_t distance = 0;  ///< between them, the largest coordinate
+  std::int32_t distance = 0;  ///< between them
 };
 
-std::int32_t largest(const IntPoint& a, const IntPoint& b) noexcept {
-  return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+/// Below 2^15 on each axis: a model is smaller.
+std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
+  const std::int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  return static_cast<std::int32_t>(integer_sqrt(static_cast<std::uint32_t>(
+      std::min<std::int64_t>(x * x + y * y + z * z, std::numeric_limits<std::uint32_t>::max()))));
 }
 
 Verdict examine(const LabelContext& context, const Sighting& sighting, const FixedPose& home,
@@ -98,7 +103,7 @@ Verdict examine(const LabelContext& context, const Sighting& sighting, const Fix
   verdict.look = at_home;
   verdict.rigid = home.point(context.model.x[i], context.model.y[i], context.model.z[i]);
   verdict.warped = warped_point(context.model, context.patches, context.warp, i);
-  verdict.distance = largest(verdict.rigid, verdict.warped);
+  verdict.distance = distance_of(verdict.rigid, verdict.warped);
   const bool apart = verdict.distance > context.tolerance.deformed(verdict.rigid.z);
   if (at_home.sight == Sight::agrees && !apart) return verdict;
   if (!apart && verdict.distance * 4 < context.tolerance.deformed(verdict.rigid.z)) {
@@ -114,9 +119,9 @@ Verdict examine(const LabelContext& context, const Sighting& sighting, const Fix
   return verdict;
 }
 
-/// Where the point is: with its region while it agrees, with the warp as far as that leaves the inlier limit.
+/// Where the point is: with its region, and the more with the warp the nearer that comes to the inlier limit;
+/// a deformed point altogether, on its reading.
 IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) noexcept {
-  if (label >= 0) return verdict.rigid;
   const IntPoint &r = verdict.rigid, &w = verdict.warped;
   if (label == kDeformed) {
     const std::int32_t off = verdict.look.sight == Sight::agrees ? verdict.look.residual : 0;

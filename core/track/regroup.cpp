@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace pliant {
 
@@ -177,14 +178,22 @@ PatchSet complete_part(const RegroupContext& context, std::int8_t k, const Patch
   return out;
 }
 
-/// Makes region `slot` of a part of region `k`. The larger side keeps the id.
+/// Points of the seen patches of region `k`, in `part` or outside of it, that one motion carries to within a
+/// quarter of the limit: what bends is no rigid part, however large.
+std::uint32_t carried(const RegroupContext& context, std::int8_t k, const PatchSet& part, bool inside,
+                      const RigidTransform& pose, double limit) noexcept {
+  std::uint32_t count = 0;
+  for (std::size_t p = 0; p < context.patches.count; ++p)
+    if (context.warp.home[p] == k && part.has(p) == inside && patch_counts(context.warp, p) &&
+        patch_deviation(context.patches, context.warp, p, pose) < limit * limit / 16)
+      count += context.patches.sizes[p];
+  return count;
+}
+
+/// Makes region `slot` of a part of region `k`. The side of which more is rigid keeps the id.
 void split(const RegroupContext& context, std::int8_t k, std::size_t slot, const RigidPart& found,
            RegionSet& regions, PointState& points) noexcept {
   const PatchSet part = complete_part(context, k, found.patches);
-  std::uint32_t in_part = 0, in_rest = 0;
-  for (std::size_t p = 0; p < context.patches.count; ++p)
-    if (context.warp.home[p] == k) (part.has(p) ? in_part : in_rest) += context.patches.sizes[p];
-  const bool part_stays = in_part > in_rest;
   TrackedRegion& old = regions[static_cast<std::size_t>(k)];
   TrackedRegion& fresh = regions[slot];
   fresh = old;
@@ -197,6 +206,8 @@ void split(const RegroupContext& context, std::int8_t k, std::size_t slot, const
         patch_deviation(context.patches, context.warp, p, old.pose) < limit * limit)
       rest.add(p);
   const RigidTransform rest_pose = fit_patches(context.patches, context.warp, rest, old.pose);
+  const bool part_stays =
+      carried(context, k, part, true, found.pose, limit) > carried(context, k, part, false, rest_pose, limit);
   old.pose = part_stays ? found.pose : rest_pose;
   fresh.pose = part_stays ? rest_pose : found.pose;
   fresh.from_parent = old.pose.inverse() * fresh.pose;  // none of its points bears its label yet
@@ -239,13 +250,54 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
   return false;
 }
 
-/// Points that are with their region are with the one that they belong to now, where it puts them.
-void settle(const RegroupContext& context, const RegionSet& regions, PointState& points) noexcept {
+/// Two regions trade ids.
+void trade(const RegroupContext& context, RegroupState& state, RegionSet& regions, PointState& points,
+           std::int8_t a, std::int8_t b) noexcept {
+  const auto traded = [a, b](std::int8_t k) { return k == a ? b : k == b ? a : k; };
+  for (std::size_t i = 0; i < points.home.size(); ++i) {
+    points.home[i] = traded(points.home[i]);
+    points.rival[i] = traded(points.rival[i]);
+  }
+  for (std::size_t p = 0; p < context.patches.count; ++p) context.warp.home[p] = traded(context.warp.home[p]);
+  std::swap(regions[static_cast<std::size_t>(a)], regions[static_cast<std::size_t>(b)]);
+  for (TrackedRegion& region : regions)
+    if (region.alive) region.parent = traded(region.parent);
+  state.suspected = {};
+  state.alike = {};
+}
+
+/// The base is the largest body, as it was at first: a far larger region takes its place.
+bool hand_over_base(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
+                    RegionSet& regions, PointState& points) noexcept {
+  std::size_t largest = 0;
+  for (std::size_t k = 1; k < regions.size(); ++k)
+    if (regions[k].alive && regions[k].members > regions[largest].members) largest = k;
+  state.outgrown = regions[largest].members > 4 * regions[0].members ? state.outgrown + 1 : 0;
+  if (state.outgrown < settings.merge_after) return false;
+  state.outgrown = 0;
+  trade(context, state, regions, points, 0, static_cast<std::int8_t>(largest));
+  TrackedRegion& base = regions[0];
+  TrackedRegion& child = regions[largest];
+  // the tree turns over: what the base hung on now hangs on it
+  base.parent = -1;
+  child.parent = 0;
+  for (std::size_t k = 1; k < regions.size(); ++k) {
+    if (!regions[k].alive) continue;
+    if (regions[k].parent < 0) regions[k].parent = 0;
+    regions[k].from_parent =
+        regions[static_cast<std::size_t>(regions[k].parent)].pose.inverse() * regions[k].pose;
+  }
+  return true;
+}
+
+/// Rigid points bear the label of the region that they belong to now, where it puts them: those that changed
+/// region, or all of them.
+void settle(const RegroupContext& context, const RegionSet& regions, bool all, PointState& points) noexcept {
   std::array<FixedPose, limits::kMaxRegions> poses;
   for (std::size_t k = 0; k < regions.size(); ++k)
     if (regions[k].alive) poses[k] = FixedPose(regions[k].pose, context.model.centre);
   for (std::size_t i = 0; i < context.model.size; ++i) {
-    if (points.label[i] < 0) continue;
+    if (points.label[i] < 0 || (!all && points.label[i] == points.home[i])) continue;
     points.label[i] = points.home[i];
     points.position[i] = poses[static_cast<std::size_t>(points.home[i])].point(
         context.model.x[i], context.model.y[i], context.model.z[i]);
@@ -260,10 +312,11 @@ bool regroup(const RegroupContext& context, const RegroupSettings& settings, Reg
   for (std::size_t i = 0; i < context.model.size; ++i)
     ++regions[static_cast<std::size_t>(points.home[i])].members;
   const bool switched = switch_patches(context, state, regions, points);
-  bool changed = merge(context, settings, state, regions, points);
+  bool changed = hand_over_base(context, settings, state, regions, points) ||
+                 merge(context, settings, state, regions, points);
   if (const std::size_t slot = free_slot(regions, settings.max_regions); slot != 0 && !changed)
     changed = split_parts(context, settings, slot, state, regions, points);
-  if (switched || changed) settle(context, regions, points);
+  if (switched || changed) settle(context, regions, changed, points);
   return changed;
 }
 

@@ -23,6 +23,7 @@ struct RegroupState {
   std::array<std::array<std::uint8_t, limits::kMaxRegions>, limits::kMaxRegions>
       alike{};  ///< frames in a row in which two regions moved alike, [lower id][higher id]
   std::array<int, limits::kMaxRegions> suspected{};  ///< frames in a row in which a region showed two motions
+  int outgrown = 0;  ///< frames in a row in which another region was far larger than the base
 };
 
 /// Everything the regrouping looks at.
@@ -36,7 +37,8 @@ struct RegroupContext {
 
 /// Lets patches go over to a neighbouring region that suits them better, makes one of regions that one motion
 /// suits as well as two, or else makes a region of a part that the warp takes along a rigid motion of its
-/// own. Each needs some frames in a row. True when a region came or went.
+/// own. Each needs some frames in a row. The base is the largest body: where it has shrunk to a fourth of
+/// another, as a bending object's may, that one takes its place. True when a region came or went.
 bool regroup(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
              RegionSet& regions, PointState& points) noexcept;
 

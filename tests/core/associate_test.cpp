@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "tests/core/track_scene.hpp"
 
@@ -134,6 +136,31 @@ TEST(FacesCamera, ComparesWithTheLineOfSight) {
   EXPECT_FALSE(faces_camera({0, 0, 16000}, {0, 0, 16384}, 4240));
   EXPECT_FALSE(faces_camera({0, 0, 16000}, {16384, 0, 0}, 0));
   EXPECT_TRUE(faces_camera({-16000, 0, 16000}, {16384, 0, 0}, 4240));  // seen from the side
+}
+
+TEST_F(Associate, PullsPartsButNotTheBaseBackFromWhereTheCameraSeesThrough) {
+  RigidTransform off = usual_pose();
+  off.translation.x() += 0.01;
+  const auto sideways = [&](std::int8_t region) {
+    scene().points.reset();
+    scene().place(off);
+    scene().regions[1] = scene().regions[0];
+    std::fill(scene().points.home.begin(), scene().points.home.end(), region);
+    std::pair<std::size_t, double> found{0, 0};  // rows along the picture, and their mean pull along x
+    for (const Correspondence& c : scene().points.correspondences.first(run(20 * kUnitsPerMillimetre))) {
+      const FixedPose pose(off, scene().tables.centre);
+      const ModelTables& model = scene().tables;
+      const IntPoint n = pose.direction(model.nx[c.index], model.ny[c.index], model.nz[c.index]);
+      if (n.x == c.nx && n.y == c.ny && n.z == c.nz) continue;
+      ++found.first;
+      found.second += c.nx / 16384.0 * c.residual / 256.0;
+    }
+    return found;
+  };
+  EXPECT_EQ(sideways(0).first, 0U);
+  const auto [count, pull] = sideways(1);
+  ASSERT_GT(count, 20U);
+  EXPECT_LT(pull / static_cast<double>(count), -2);  // millimetres, back to the left
 }
 
 }  // namespace

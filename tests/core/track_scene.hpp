@@ -49,15 +49,22 @@ class TrackScene {
   }
   /// `rounds` of association and alignment, the gate (millimetres) shrinking by a fifth each.
   void align_rounds(int rounds, int gate) {
-    for (int i = 0; i < rounds; ++i, gate = std::max(gate * 4 / 5, 8)) {
-      AssociateSettings associate_settings;
-      associate_settings.points = tables.size;
-      associate_settings.gate = gate * kUnitsPerMillimetre;
-      associate(tables, surface, projector, regions, associate_settings, points);
-      AlignSettings align_settings;
-      align_settings.widest = gate * kUnitsPerMillimetre;
-      align(surface, align_settings, points, regions);
-    }
+    for (int i = 0; i < rounds; ++i, gate = std::max(gate * 4 / 5, 8))
+      align_once(gate * kUnitsPerMillimetre, gate * kUnitsPerMillimetre);
+  }
+  /// The last rounds of a frame: only what fits within half of the inlier limit counts.
+  void align_tightly() {
+    const std::int32_t limit = tolerance.deformed(depth_of(regions[0].pose, tables.centre));
+    for (int i = 0; i < 2; ++i) align_once(3 * limit, limit / 2);
+  }
+  void align_once(std::int32_t gate, std::int32_t widest) {
+    AssociateSettings associate_settings;
+    associate_settings.points = tables.size;
+    associate_settings.gate = gate;
+    associate(tables, surface, projector, regions, associate_settings, points);
+    AlignSettings align_settings;
+    align_settings.widest = widest;
+    align(surface, align_settings, points, regions);
   }
   static WarpSettings warp_settings() {
     WarpSettings settings;
