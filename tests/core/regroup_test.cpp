@@ -102,10 +102,8 @@ TEST_F(Hinge, PutsRigidPointsNearWhereTheirRegionPutsThem) {
       ASSERT_TRUE(region.alive);
       const Vector3 expected = region.pose * scene().rest(i) * kUnitsPerMetre;
       const IntPoint p = scene().points.position[i];
-      // the warp has a say within the inlier limit
-      ASSERT_LT((Vector3(p.x, p.y, p.z) - expected).norm(),
-                scene().tolerance.deformed(p.z) + kUnitsPerMillimetre)
-          << i;
+      // the warp has a say; beyond the inlier limit for a few frames at most, until the evidence suffices
+      ASSERT_LT((Vector3(p.x, p.y, p.z) - expected).norm(), 2 * scene().tolerance.deformed(p.z)) << i;
     }
   }
 }
