@@ -76,6 +76,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
   model_ = model;
   snapshot_.start(camera, sensor);
   matcher_.start(kernels);
+  matcher_.prepare(model.descriptors().first(settings_.model_keypoints));
   // Ten points across the support's radius tell its shape; more cost time only.
   leaf_ = std::max(model.spacing(), 0.1 * model.header().support_radius);
   // A local frame is off by some degrees: a tenth of a radian at most of the lever counts as agreement at
@@ -229,9 +230,9 @@ std::int64_t FrameDetector::slice_describe() noexcept {
 
 std::int64_t FrameDetector::slice_match() noexcept {
   const std::size_t group =
-      std::min<std::size_t>(2 * kDotQueries, key_count_ - std::min(cursor_, key_count_));
-  matcher_.match(descriptors_.subspan(cursor_, group), model_.descriptors().first(settings_.model_keypoints),
-                 settings_.matches, matches_.subspan(cursor_ * settings_.matches));
+      std::min<std::size_t>(2 * kBoundQueries, key_count_ - std::min(cursor_, key_count_));
+  matcher_.match(descriptors_.subspan(cursor_, group), settings_.matches,
+                 matches_.subspan(cursor_ * settings_.matches));
   for (std::size_t k = cursor_ * settings_.matches; k < (cursor_ + group) * settings_.matches; ++k) {
     proposals_[k].scene = static_cast<std::uint16_t>(k / settings_.matches);
     proposals_[k].model = matches_[k].model;

@@ -1,4 +1,5 @@
-// Times of the stages of a registration: registration_times MODEL.ply SCENE MODEL_KEYPOINTS SCENE_KEYPOINTS [RUNS]
+// Times of the stages of a registration: registration_times MODEL.ply SCENE MODEL_KEYPOINTS SCENE_KEYPOINTS
+// [RUNS]
 #include <cstdio>
 #include <cstdlib>
 
@@ -39,8 +40,8 @@ int main(int argc, char** argv) {
                                            "grouping", "chain",     "deformed"};
   std::printf("keypoints %u x %u, %s, median of %d runs, thread time in ms\n", result.model_keypoints,
               result.scene_keypoints, describe(result.outcome), runs);
-  for (int s = 0; s < kRegistrationStageCount; ++s)
-    std::printf("%s %.2f  ", kNames[s], median_of(stages[s]));
-  std::printf("total %.2f (least %.2f)\n", median_of(totals), *std::min_element(totals.begin(), totals.end()));
+  for (int s = 0; s < kRegistrationStageCount; ++s) std::printf("%s %.2f  ", kNames[s], median_of(stages[s]));
+  std::printf("total %.2f (least %.2f)\n", median_of(totals),
+              *std::min_element(totals.begin(), totals.end()));
   return 0;
 }
