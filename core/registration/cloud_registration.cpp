@@ -18,9 +18,6 @@ namespace pliant {
 
 namespace {
 
-// A pose must have this share of the model's points on the scene's surface, with its normals. Absent objects
-// reach 0.36; what is seen from one side only is judged by free space instead.
-constexpr double kConvincingShare = 0.42;
 // Of a cloud taken from one place, nearly all points are in sight from there.
 constexpr double kOneView = 0.95;
 // Keypoints described in all steps together, of those asked for: room for one step of −20 % (1 + 1.56), and
