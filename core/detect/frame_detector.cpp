@@ -24,6 +24,12 @@ constexpr double kCertain = 0.45;
 constexpr double kConvincing = 0.28;
 constexpr double kLastResort = 0.2;
 constexpr double kRivalShare = 0.4;
+// Something round lies within the tolerance of much of another round thing, in many attitudes and less
+// closely than the object itself would (PoseEvidence::unexplained).
+constexpr double kTwinShare = 0.3;
+constexpr double kMostUnexplained = 0.06;
+constexpr double kSurelyUnexplained = 0.02;
+constexpr double kBeyondDoubt = 0.5;
 constexpr double kMostOutside =
     0.4;  // of the facing points; with more out of the picture, only certainty counts
 
@@ -358,18 +364,28 @@ void FrameDetector::decide() noexcept {
     best_.score = finalists_[first].score;
     best_.evidence = finalists_[first].evidence;
     best_.seamless = finalists_[first].seamless;
+    const double left = best_.evidence.unexplained() + kSurelyUnexplained;
     for (std::size_t k = 0; k < finalist_count_; ++k) {
-      if (k == first) continue;
-      const Vector3 apart = finalists_[k].pose * model_.centre() - best_.pose * model_.centre();
-      double& other = apart.dot(apart) < model_.radius() * model_.radius() ? best_.twin : best_.rival;
-      other = std::max(other, finalists_[k].score);
+      const Candidate& other = finalists_[k];
+      if (k == first || same_place(other.pose, best_.pose)) continue;
+      const Vector3 apart = other.pose * model_.centre() - best_.pose * model_.centre();
+      double& against = apart.dot(apart) < model_.radius() * model_.radius() ? best_.twin : best_.rival;
+      // What fits less closely speaks less against it.
+      const double weight = std::min(1.0, left / (other.evidence.unexplained() + kSurelyUnexplained));
+      against = std::max(against, other.score > 0 ? other.score * weight : other.score);
     }
   }
   const bool lone = best_.rival <= kRivalShare * best_.score;
   const bool in_sight = best_.evidence.outside <= kMostOutside * best_.evidence.facing;
-  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && lone && in_sight);
+  const bool single = best_.twin <= kTwinShare * best_.score;
+  // Where noise explains the fit, or no other attitude comes near, it is this object and none of a like
+  // shape.
+  const bool itself =
+      best_.evidence.unexplained() <= kMostUnexplained || single || best_.score >= kBeyondDoubt;
+  const bool convincing =
+      itself && (best_.score >= kCertain || (best_.score >= kConvincing && lone && in_sight));
   const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
-  const bool clear = lone && in_sight && best_.twin <= kRivalShare * best_.score;
+  const bool clear = lone && in_sight && single;
   const bool last_resort = (last || round_ >= 2) && best_.score >= kLastResort && clear;
   if ((convincing || last_resort) && (last || !settings_.exhaustive)) {
     state_ = DetectState::found;
