@@ -109,6 +109,8 @@ class FrameDetector {
   void judge(Candidate& candidate, std::size_t count, double floor) const noexcept;
   void keep(const Candidate& candidate) noexcept;
   void decide() noexcept;
+  /// Enough of this round's keypoints on the posed model have their best match near the right place.
+  [[nodiscard]] bool supported(const RigidTransform& pose) const noexcept;
   [[nodiscard]] bool same_place(const RigidTransform& a, const RigidTransform& b) const noexcept;
 
   DetectSettings settings_;
