@@ -36,13 +36,13 @@ void build_chain(RegistrationState& s, const RigidTransform& first, InstanceBuff
   // The same again on the outliers.
   while (regions < s.settings.max_regions &&
          static_cast<double>(explained) < s.settings.wanted_share * static_cast<double>(n)) {
-    if (!find_region(s, poses[0], noise, poses[regions])) break;
+    if (!find_region(s, buffers, {poses.data(), regions}, noise, poses[regions])) break;
     const auto label = static_cast<std::int8_t>(regions);
     for (std::size_t i = 0; i < n; ++i)
-      if (s.open[i] != 0 && s.proposal[i] != 0) {
+      if (s.proposal[i] != 0) {
+        explained += s.open[i];
         buffers.labels[i] = label;
         s.open[i] = 0;
-        ++explained;
       }
     take_points(s, buffers, label, poses[regions], noise);
     ++regions;

@@ -10,11 +10,25 @@ namespace pliant {
 
 namespace {
 
+constexpr double kLittleTurn = 0.87;  // cosine of 30°
+constexpr float kDoubtful = 0.3F;     // of what a point may be off its region: more than chance
+
 /// Open model points, the first `most` in the model's order (evenly spread), to s.part.
 std::size_t open_part(RegistrationState& s, std::size_t most) noexcept {
   std::size_t count = 0;
   for (std::size_t i = 0; i < s.model.size() && count < most; ++i)
     if (s.open[i] != 0) s.part[count++] = static_cast<std::uint16_t>(i);
+  return count;
+}
+
+/// Points of the largest connected piece of the open ones, at most the first `most`, to s.part.
+std::size_t largest_open_piece(RegistrationState& s, std::size_t most) noexcept {
+  std::uint32_t size = 0;
+  const std::uint32_t piece = s.islands.pieces(
+      s.model, [&](std::size_t i) { return s.open[i] != 0; }, size);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < s.model.size() && count < most; ++i)
+    if (piece != 0 && s.islands.piece()[i] == piece) s.part[count++] = static_cast<std::uint16_t>(i);
   return count;
 }
 
@@ -43,10 +57,34 @@ Gain gain_of(RegistrationState& s, const RigidTransform& pose, const RigidTransf
   return gain;
 }
 
+/// The connected pieces, in s.islands, of what a pose explains: open points, and points of other regions that
+/// lie less than half as far off its surface as off their own region's. Returns the largest piece's size.
+std::uint32_t explained_better(RegistrationState& s, const InstanceBuffers& buffers,
+                               std::span<const RigidTransform> poses, double noise,
+                               const RigidTransform& pose) noexcept {
+  const std::size_t n = s.model.size();
+  // s.scratch: how far each point is off its own region.
+  for (std::size_t r = 0; r < poses.size(); ++r) {
+    measure(s, poses[r], noise, false);
+    for (std::size_t i = 0; i < n; ++i)
+      if (buffers.labels[i] == static_cast<std::int8_t>(r)) s.scratch[i] = off_surface(s, i, noise);
+  }
+  measure(s, pose, noise, false);
+  for (std::size_t i = 0; i < n; ++i) {
+    s.off[i] = off_surface(s, i, noise);
+    if (s.open[i] == 0 && (s.scratch[i] < kDoubtful || s.off[i] > 0.5F * s.scratch[i])) s.off[i] = -1;
+  }
+  std::uint32_t size = 0;
+  static_cast<void>(s.islands.pieces(
+      s.model, [&](std::size_t i) { return on_surface(s.off[i]); }, size));
+  return size;
+}
+
 }  // namespace
 
-bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
-                 RigidTransform& pose) noexcept {
+bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span<const RigidTransform> poses,
+                 double noise, RigidTransform& pose) noexcept {
+  const RigidTransform& base = poses[0];
   const auto least = static_cast<std::uint32_t>(std::max(40.0, 0.02 * static_cast<double>(s.model.size())));
   std::array<MatchGroup, 4> groups;
   const std::size_t matches = collect_matches(s, [&](std::size_t i) { return s.open[i] != 0; });
@@ -54,12 +92,14 @@ bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
   settings.tolerance = match_tolerance(s);
   settings.use_frames = s.settings.frame_hypotheses;
   const std::size_t count = s.grouping.group(s.posed_left.first(matches), settings, s.model.radius(), groups);
-  // Beside the groups: from the base's own pose, for parts that moved little.
+  // Beside the groups: from the base's own pose, for parts that moved little; all that is open, and its
+  // largest connected piece alone, which what is open elsewhere cannot pull away.
   Gain best;
-  for (std::size_t k = 0; k <= count; ++k) {
+  for (std::size_t k = 0; k <= count + 1; ++k) {
     RigidTransform trial = k < count ? groups[k].transform : base;
-    const std::size_t part = open_part(s, kFinePoints);
-    const double gate = k < count ? 2 * match_tolerance(s) : 0.1 * s.model.radius();
+    const std::size_t part = k <= count ? open_part(s, kFinePoints) : largest_open_piece(s, kFinePoints);
+    if (part < least) continue;
+    const double gate = k < count ? 2 * match_tolerance(s) : (k == count ? 0.1 : 0.2) * s.model.radius();
     const AlignSettings wide = {gate, match_tolerance(s), std::max(gate, 1.5 * s.spacing), 12};
     if (align_to_cloud(s.model, s.part.first(std::min<std::size_t>(part, 800)), base_target(s), wide,
                        trial) == 0)
@@ -72,16 +112,22 @@ bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
     }
     if (2 * best.points > part) break;  // most of what is open: nothing can beat it
   }
-  if (best.points < least) return false;
+  if (best.points == 0) return false;
+  // A part that turned by little is half explained by the region that it hangs on: what is open of it may be
+  // few.
+  const bool little = cos_angle(base.rotation.transpose() * pose.rotation) > kLittleTurn;
+  const std::uint32_t least_open = little ? least / 2 : least;
+  if (best.points < least_open) return false;
   // Once more on the piece alone.
-  for (int pass = 0; pass < 2; ++pass) {
-    const Gain gain = gain_of(s, pose, base, noise);
-    if (gain.points < least) return false;
-    std::size_t part = 0;
-    for (std::size_t i = 0; i < s.model.size() && part < kFinePoints; ++i)
-      if (s.islands.piece()[i] == gain.piece) s.part[part++] = static_cast<std::uint16_t>(i);
-    if (pass == 0) refine(s, s.part.first(part), noise, pose);
-  }
+  const Gain gain = gain_of(s, pose, base, noise);
+  if (gain.points < least_open) return false;
+  std::size_t part = 0;
+  for (std::size_t i = 0; i < s.model.size() && part < kFinePoints; ++i)
+    if (s.islands.piece()[i] == gain.piece) s.part[part++] = static_cast<std::uint16_t>(i);
+  refine(s, s.part.first(part), noise, pose);
+  if (gain_of(s, pose, base, noise).points < least_open) return false;
+  const std::uint32_t size = explained_better(s, buffers, poses, noise, pose);
+  if (size < least) return false;
   // Sizes of the pieces; two legs may hang together through the hip alone, which bends.
   for (std::size_t i = 0; i < s.model.size(); ++i) s.gap_nearest[i] = 0;
   for (std::size_t i = 0; i < s.model.size(); ++i)

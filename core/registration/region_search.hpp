@@ -7,10 +7,11 @@
 
 namespace pliant {
 
-/// One more rigid region among the open points; false when there is none. Its points are marked in
-/// s.proposal: all of them that its pose (scene <- model) explains in pieces worth the name. `base`: the pose
-/// of the first region; `noise`: the scene's, metres.
-[[nodiscard]] bool find_region(RegistrationState& s, const RigidTransform& base, double noise,
+/// One more rigid region; false when there is none. Its points are marked in s.proposal: open points, and
+/// points of the regions at `poses` (scene <- model, the base first) that it explains much better. `noise`:
+/// the scene's, metres.
+[[nodiscard]] bool find_region(RegistrationState& s, const InstanceBuffers& buffers,
+                               std::span<const RigidTransform> poses, double noise,
                                RigidTransform& pose) noexcept;
 
 /// Where regions meet, a point belongs to the one whose surface is nearer; then each region is aligned on its
