@@ -55,8 +55,11 @@ def main():
             scene = f"scene_n{noise:03}_s0.ply"
             subprocess.run([pliant, "register", "--model", model, "--scene", os.path.join(CASES, case, scene), "-o", ours],
                            check=True, stdout=subprocess.DEVNULL)
+            if os.path.exists(theirs):
+                os.remove(theirs)
             compare(program, case, scene, 1800, 2000, 1, theirs)
-            print(f"| {noise} | {labels(evaluate(case, ours))} | {labels(evaluate(case, theirs))} |", flush=True)
+            peer = labels(evaluate(case, theirs)) if os.path.exists(theirs) else "not found | –"
+            print(f"| {noise} | {labels(evaluate(case, ours))} | {peer} |", flush=True)
 
 
 if __name__ == "__main__":
