@@ -61,11 +61,9 @@ void try_single_frames(RegistrationState& s, std::span<const PosedMatch> matches
     if (trial.score >= 0) try_pose(s, trial.pose, coarse, best);
 }
 
-/// How well the model fits at the same place in the best other attitude, of quarter and half turns about its
+/// The model fits about as well at the same place in another attitude, after quarter and half turns about its
 /// axes. What fits as well turned away, such as a ball, does not tell that it is the object.
-double twin_score(const RegistrationState& s, const Trial& best) noexcept {
-  Trial twin;
-  twin.score = 0;
+bool has_twin(const RegistrationState& s, const Trial& best) noexcept {
   for (int axis = 0; axis < 3; ++axis)
     for (int quarters = 1; quarters < 4; ++quarters) {
       Matrix3 turn = Matrix3::Identity();
@@ -80,9 +78,9 @@ double twin_score(const RegistrationState& s, const Trial& best) noexcept {
       Trial trial;
       try_pose(s, pose, 2 * match_tolerance(s), trial);
       const bool back = cos_angle(trial.pose.rotation.transpose() * best.pose.rotation) > kOtherAttitude;
-      if (!back && trial.score > twin.score) twin = trial;
+      if (!back && trial.score > kTwinShare * best.score) return true;
     }
-  return twin.score;
+  return false;
 }
 
 }  // namespace
@@ -106,9 +104,7 @@ double find_instance(RegistrationState& s, RigidTransform& pose) noexcept {
   }
   if (s.settings.frame_hypotheses && best.score < 0.3) try_single_frames(s, left, best);
   if (best.score < 0) return best.score;
-  if (best.score >= kConvincingShare && best.score < kCertainShare &&
-      twin_score(s, best) > kTwinShare * best.score)
-    return -1;
+  if (best.score >= kConvincingShare && best.score < kCertainShare && has_twin(s, best)) return -1;
   pose = best.pose;
   refine(s, s.prefix.first(std::min(kFinePoints, s.model.size())), 0, pose);
   return best.score;
