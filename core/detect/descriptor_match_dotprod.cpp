@@ -5,18 +5,16 @@
 
 namespace pliant {
 
-void dot_products_dotprod(const Descriptor* queries, const Descriptor* candidates, std::size_t count,
-                          std::int16_t* dots) noexcept {
-  for (std::size_t c = 0; c < count; ++c) {
-    int32x4_t sum[kDotQueries] = {vdupq_n_s32(0), vdupq_n_s32(0), vdupq_n_s32(0), vdupq_n_s32(0)};
-    const std::int8_t* candidate = candidates[c].bins.data();
-    for (std::size_t i = 0; i < kDescriptorSize; i += 16) {
-      const int8x16_t b = vld1q_s8(candidate + i);
-      for (std::size_t q = 0; q < kDotQueries; ++q)
-        sum[q] = vdotq_s32(sum[q], vld1q_s8(queries[q].bins.data() + i), b);
+void dot_products_dotprod(const Descriptor& query, const Descriptor* candidates, const std::uint32_t* which,
+                          std::size_t count, std::int16_t* dots) noexcept {
+  for (std::size_t k = 0; k < count; ++k) {
+    int32x4_t even = vdupq_n_s32(0), odd = vdupq_n_s32(0);
+    const std::int8_t* candidate = candidates[which[k]].bins.data();
+    for (std::size_t i = 0; i < kDescriptorSize; i += 32) {
+      even = vdotq_s32(even, vld1q_s8(query.bins.data() + i), vld1q_s8(candidate + i));
+      odd = vdotq_s32(odd, vld1q_s8(query.bins.data() + i + 16), vld1q_s8(candidate + i + 16));
     }
-    for (std::size_t q = 0; q < kDotQueries; ++q)
-      dots[q * count + c] = static_cast<std::int16_t>(vaddvq_s32(sum[q]));
+    dots[k] = static_cast<std::int16_t>(vaddvq_s32(vaddq_s32(even, odd)));
   }
 }
 

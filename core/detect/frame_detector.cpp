@@ -3,39 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/detect/seam.hpp"
+#include "core/detect/spread_order.hpp"
 
 namespace pliant {
 
 namespace {
 
-constexpr std::size_t kQuickPoints = 64;       // first look at a proposal
-constexpr std::size_t kCloseLookPoints = 200;  // second look
-constexpr std::size_t kAlignPoints = 400;      // full refinement
-constexpr double kPlainWeight =
-    0.3;                             // of agreeing with a wall, at the first look: any pose can sink into one
 constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise of a fitted normal (2-4°)
                                      // averaged over a support
 
-// What a pose must score, and how far below the best pose elsewhere must stay. Absent objects reach 0.2,
-// rarely 0.27, and then in several places; once every keypoint has been tried, a lone pose is believed
-// earlier.
-constexpr double kCertain = 0.45;
-constexpr double kConvincing = 0.28;
-constexpr double kLastResort = 0.2;
-constexpr double kRivalShare = 0.4;
-constexpr double kMostOutside =
-    0.4;  // of the facing points; with more out of the picture, only certainty counts
-
 Vector3 to_vector(const Point3f& p) noexcept {
   return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
-/// Rows of the frame as a rotation: local <- cloud.
-Matrix3 axes_of(const LocalFrame& frame) noexcept {
-  Matrix3 m;
-  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = frame.axes[static_cast<std::size_t>(i)] / 16384.0;
-  return m;
 }
 
 }  // namespace
@@ -76,6 +54,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
   model_ = model;
   snapshot_.start(camera, sensor);
   matcher_.start(kernels);
+  matcher_.prepare(model.descriptors().first(settings_.model_keypoints));
   // Ten points across the support's radius tell its shape; more cost time only.
   leaf_ = std::max(model.spacing(), 0.1 * model.header().support_radius);
   // A local frame is off by some degrees: a tenth of a radian at most of the lever counts as agreement at
@@ -84,6 +63,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
   // Where the noise is wider than the object's own relief, agreement says nothing.
   widest_ = 0.12 * model.radius();
   fine_ = 0.03 * model.radius();
+  finalists_.start(model.centre(), model.radius());
   state_ = DetectState::idle;
 }
 
@@ -94,7 +74,7 @@ void FrameDetector::begin(const Surface& surface) noexcept {
   phase_ = Phase::normals;
   cursor_ = 0;
   round_ = 0;
-  finalist_count_ = 0;
+  finalists_.clear();
   keypoints_used_ = 0;
   best_ = Detection();
   state_ = DetectState::working;
@@ -175,22 +155,12 @@ std::int64_t FrameDetector::slice_sample() noexcept {
   // ratio.
   order_count_ = point_count_;
   order_next_ = 0;
-  std::size_t stride = point_count_ * 1000 / 1618 + 1;
-  const auto divides = [&](std::size_t s) {
-    std::size_t a = point_count_, b = s;
-    while (b != 0) {
-      const std::size_t r = a % b;
-      a = b;
-      b = r;
-    }
-    return a != 1;
-  };
-  while (stride > 1 && divides(stride)) --stride;
+  const SpreadOrder order(point_count_);
   // With a hint, those near it come first.
   const Vector3 centre = hint_ * model_.centre();
   std::size_t placed = 0;
   for (int near = hinted_ ? 1 : 0; near >= 0; --near)
-    for (std::size_t k = 0, at = 0; k < point_count_; ++k, at = (at + stride) % point_count_) {
+    for (std::size_t k = 0, at = 0; k < point_count_; ++k, at = order.next(at)) {
       if (hinted_) {
         const Vector3 apart = to_vector(points_[at]) - centre;
         if ((apart.dot(apart) <= hint_radius_ * hint_radius_) != (near == 1)) continue;
@@ -229,9 +199,9 @@ std::int64_t FrameDetector::slice_describe() noexcept {
 
 std::int64_t FrameDetector::slice_match() noexcept {
   const std::size_t group =
-      std::min<std::size_t>(2 * kDotQueries, key_count_ - std::min(cursor_, key_count_));
-  matcher_.match(descriptors_.subspan(cursor_, group), model_.descriptors().first(settings_.model_keypoints),
-                 settings_.matches, matches_.subspan(cursor_ * settings_.matches));
+      std::min<std::size_t>(2 * kBoundQueries, key_count_ - std::min(cursor_, key_count_));
+  matcher_.match(descriptors_.subspan(cursor_, group), settings_.matches,
+                 matches_.subspan(cursor_ * settings_.matches));
   for (std::size_t k = cursor_ * settings_.matches; k < (cursor_ + group) * settings_.matches; ++k) {
     proposals_[k].scene = static_cast<std::uint16_t>(k / settings_.matches);
     proposals_[k].model = matches_[k].model;
@@ -243,141 +213,6 @@ std::int64_t FrameDetector::slice_match() noexcept {
     cursor_ = 0;
   }
   return static_cast<std::int64_t>(group * settings_.model_keypoints) / 12 + 1;
-}
-
-RigidTransform FrameDetector::pose_of(const Proposal& proposal) const noexcept {
-  const Matrix3 rotation =
-      axes_of(frames_[proposal.scene]).transpose() * axes_of(model_.frames()[proposal.model]);
-  return {rotation,
-          to_vector(key_points_[proposal.scene]) - rotation * to_vector(model_.positions()[proposal.model])};
-}
-
-std::int64_t FrameDetector::slice_propose() noexcept {
-  constexpr std::size_t kBatch = 128;
-  const std::size_t last = std::min(cursor_ + kBatch, proposal_count_);
-  for (; cursor_ < last; ++cursor_) {
-    Proposal& p = proposals_[cursor_];
-    p.score = static_cast<float>(
-        pose_evidence(model_, snapshot_, pose_of(p), kQuickPoints, coarse_, widest_, kPlainWeight).score());
-  }
-  if (cursor_ >= proposal_count_) {
-    shortlist_count_ = std::min(kShortlist, proposal_count_);
-    std::partial_sort(proposals_.begin(), proposals_.begin() + static_cast<std::ptrdiff_t>(shortlist_count_),
-                      proposals_.begin() + static_cast<std::ptrdiff_t>(proposal_count_),
-                      [](const Proposal& a, const Proposal& b) {
-                        if (a.score != b.score) return a.score > b.score;
-                        return a.scene != b.scene ? a.scene < b.scene : a.model < b.model;
-                      });
-    phase_ = Phase::shortlist;
-    cursor_ = 0;
-    if (hinted_ && round_ == 0) try_pose(hint_);
-  }
-  return static_cast<std::int64_t>(kBatch) * 8;
-}
-
-bool FrameDetector::same_place(const RigidTransform& a, const RigidTransform& b) const noexcept {
-  const Vector3 apart = a * model_.centre() - b * model_.centre();
-  return apart.dot(apart) < 0.09 * model_.radius() * model_.radius() &&
-         cos_angle(a.rotation.transpose() * b.rotation) > 0.9;
-}
-
-void FrameDetector::judge(Candidate& candidate, std::size_t count, double floor) const noexcept {
-  candidate.evidence = pose_evidence(model_, snapshot_, candidate.pose, count, fine_, widest_);
-  candidate.score = candidate.evidence.score();
-  candidate.seamless = 0;
-  if (candidate.score <= 0 || candidate.score <= floor) return;  // the seam could only lower it
-  candidate.seamless = seam_evidence(model_, snapshot_, candidate.pose, kEvidencePoints, 0.5 * fine_).share();
-  candidate.score -= candidate.seamless;
-}
-
-void FrameDetector::keep(const Candidate& candidate) noexcept {
-  // One candidate a place: the better one stays.
-  for (std::size_t k = 0; k < finalist_count_; ++k)
-    if (same_place(finalists_[k].pose, candidate.pose)) {
-      if (candidate.score > finalists_[k].score) finalists_[k] = candidate;
-      return;
-    }
-  if (finalist_count_ < kFinalists) {
-    finalists_[finalist_count_++] = candidate;
-    return;
-  }
-  std::size_t worst = 0;
-  for (std::size_t k = 1; k < finalist_count_; ++k)
-    if (finalists_[k].score < finalists_[worst].score) worst = k;
-  if (candidate.score > finalists_[worst].score) finalists_[worst] = candidate;
-}
-
-void FrameDetector::try_pose(const RigidTransform& pose) noexcept {
-  Candidate candidate;
-  candidate.pose = pose;
-  refine_pose(model_, snapshot_, kCloseLookPoints, coarse_, fine_, 4, candidate.pose);
-  // What scores below every finalist is dropped anyway.
-  double floor = 10;
-  for (std::size_t k = 0; k < finalist_count_; ++k) floor = std::min(floor, finalists_[k].score);
-  judge(candidate, kCloseLookPoints, finalist_count_ == kFinalists ? floor : -10);
-  keep(candidate);
-}
-
-std::int64_t FrameDetector::slice_shortlist() noexcept {
-  if (cursor_ < shortlist_count_) {
-    try_pose(pose_of(proposals_[cursor_++]));
-  }
-  if (cursor_ >= shortlist_count_) {
-    phase_ = Phase::settle;
-    cursor_ = 0;
-  }
-  return 300;
-}
-
-std::int64_t FrameDetector::slice_settle() noexcept {
-  if (cursor_ < finalist_count_) {
-    Candidate& candidate = finalists_[cursor_++];
-    // The object may have deformed: a pose that fits all of it fairly says that it is there, one that fits
-    // its largest rigid part closely says where.
-    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.5 * fine_, 6, candidate.pose);
-    judge(candidate, kEvidencePoints, -10);
-    Candidate close = candidate;
-    refine_pose(model_, snapshot_, kAlignPoints, fine_, 0.1 * fine_, 8, close.pose);
-    judge(close, kEvidencePoints, -10);
-    const double score = std::max(candidate.score, close.score);
-    if (close.score > 0.5 * candidate.score) candidate = close;
-    candidate.score = score;
-  }
-  if (cursor_ >= finalist_count_) decide();
-  return 1500;
-}
-
-void FrameDetector::decide() noexcept {
-  best_ = Detection();
-  std::size_t first = kFinalists;
-  for (std::size_t k = 0; k < finalist_count_; ++k)
-    if (first == kFinalists || finalists_[k].score > finalists_[first].score) first = k;
-  if (first < kFinalists) {
-    best_.pose = finalists_[first].pose;
-    best_.score = finalists_[first].score;
-    best_.evidence = finalists_[first].evidence;
-    best_.seamless = finalists_[first].seamless;
-    for (std::size_t k = 0; k < finalist_count_; ++k) {
-      if (k == first) continue;
-      const Vector3 apart = finalists_[k].pose * model_.centre() - best_.pose * model_.centre();
-      double& other = apart.dot(apart) < model_.radius() * model_.radius() ? best_.twin : best_.rival;
-      other = std::max(other, finalists_[k].score);
-    }
-  }
-  const bool lone = best_.rival <= kRivalShare * best_.score;
-  const bool in_sight = best_.evidence.outside <= kMostOutside * best_.evidence.facing;
-  const bool convincing = best_.score >= kCertain || (best_.score >= kConvincing && lone && in_sight);
-  const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
-  const bool clear = lone && in_sight && best_.twin <= kRivalShare * best_.score;
-  const bool last_resort = (last || round_ >= 2) && best_.score >= kLastResort && clear;
-  if ((convincing || last_resort) && (last || !settings_.exhaustive)) {
-    state_ = DetectState::found;
-  } else if (last) {
-    state_ = DetectState::nothing;
-  } else {
-    ++round_;
-    begin_round();
-  }
 }
 
 }  // namespace pliant

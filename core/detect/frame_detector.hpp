@@ -3,7 +3,6 @@
 // free space.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,6 +13,7 @@
 #include "core/detect/depth_snapshot.hpp"
 #include "core/detect/descriptor_match.hpp"
 #include "core/detect/point_grid.hpp"
+#include "core/detect/pose_candidates.hpp"
 #include "core/detect/pose_evidence.hpp"
 #include "core/detect/shot.hpp"
 #include "core/detect/uniform_sampling.hpp"
@@ -38,16 +38,6 @@ enum class DetectState : std::uint8_t {
   nothing   ///< the frame does not show the object, or not clearly
 };
 
-struct Detection {
-  RigidTransform pose;    ///< camera <- model, in the frame given to begin()
-  double score = -10;     ///< PoseEvidence::score() of the refined pose less its seamless share, at most 1
-  double rival = -10;     ///< of the best pose at another place: more than the model's radius away
-  double twin = -10;      ///< of the best pose at the same place in another attitude: near `score` for a
-                          ///< symmetric object, whose attitude is then one of several
-  PoseEvidence evidence;  ///< over kEvidencePoints model points
-  double seamless = 0;    ///< SeamEvidence::share()
-};
-
 class FrameDetector {
  public:
   static constexpr std::size_t kEvidencePoints = 600;
@@ -70,16 +60,9 @@ class FrameDetector {
   DetectState step(std::int64_t budget) noexcept;
   [[nodiscard]] DetectState state() const noexcept { return state_; }
   /// A pose that was looked at closely.
-  struct Candidate {
-    RigidTransform pose;
-    double score = -10;
-    PoseEvidence evidence;
-    double seamless = 0;
-  };
+  using Candidate = PoseCandidate;
   /// The distinct poses of the search so far, in no order: for several instances in one picture.
-  [[nodiscard]] std::span<const Candidate> candidates() const noexcept {
-    return {finalists_.data(), finalist_count_};
-  }
+  [[nodiscard]] std::span<const Candidate> candidates() const noexcept { return finalists_.all(); }
   /// Scene keypoints described so far.
   [[nodiscard]] std::size_t keypoints_used() const noexcept { return keypoints_used_; }
   /// The best pose so far; to be believed only in state found.
@@ -93,7 +76,6 @@ class FrameDetector {
     float score = 0;
   };
   static constexpr std::size_t kShortlist = 96;  // proposals that are looked at closely
-  static constexpr std::size_t kFinalists = 12;  // poses that are refined in full
 
   void begin_round() noexcept;
   std::int64_t slice() noexcept;
@@ -106,10 +88,10 @@ class FrameDetector {
   std::int64_t slice_settle() noexcept;
   [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
   void try_pose(const RigidTransform& pose) noexcept;
-  void judge(Candidate& candidate, std::size_t count, double floor) const noexcept;
-  void keep(const Candidate& candidate) noexcept;
+  void judge(PoseCandidate& candidate, std::size_t count, double floor) const noexcept;
   void decide() noexcept;
-  [[nodiscard]] bool same_place(const RigidTransform& a, const RigidTransform& b) const noexcept;
+  /// Enough of this round's keypoints on the posed model have their best match near the right place.
+  [[nodiscard]] bool supported(const RigidTransform& pose) const noexcept;
 
   DetectSettings settings_;
   ModelView model_;
@@ -132,7 +114,7 @@ class FrameDetector {
   std::span<LocalFrame> frames_;
   std::span<Match> matches_;
   std::span<Proposal> proposals_;
-  std::array<Candidate, kFinalists> finalists_;
+  PoseCandidates finalists_;  // poses that are refined in full
 
   DetectState state_ = DetectState::idle;
   Phase phase_ = Phase::normals;
@@ -147,7 +129,6 @@ class FrameDetector {
   std::size_t key_count_ = 0;  // of this round
   std::size_t proposal_count_ = 0;
   std::size_t shortlist_count_ = 0;
-  std::size_t finalist_count_ = 0;
   Detection best_;
 };
 

@@ -55,4 +55,48 @@ bool PointGrid::build(std::span<const Point3f> points, double cell) noexcept {
   return true;
 }
 
+std::size_t PointGrid::gather_within(const Point3f& p, float radius, std::size_t most,
+                                     const Gathered& out) const noexcept {
+  if (most == 0 || count_ == 0) return 0;
+  const float limit = radius * radius;
+  const std::int32_t x0 = cell_of(p.x - radius), x1 = cell_of(p.x + radius);
+  const std::int32_t y0 = cell_of(p.y - radius), y1 = cell_of(p.y + radius);
+  const std::int32_t z0 = cell_of(p.z - radius), z1 = cell_of(p.z + radius);
+  std::size_t held = 0, candidates = 16 * most;
+  for (std::int32_t z = z0; z <= z1; ++z)
+    for (std::int32_t y = y0; y <= y1; ++y) {
+      const std::uint32_t row = row_of(y, z);
+      std::uint32_t bucket = (row + static_cast<std::uint32_t>(x0)) & mask_;
+      std::uint32_t left = static_cast<std::uint32_t>(x1 - x0) + 1;
+      if (left > mask_ + 1) left = mask_ + 1;
+      while (left > 0) {
+        const std::uint32_t run = left < mask_ + 1 - bucket ? left : mask_ + 1 - bucket;
+        std::uint32_t e = starts_[bucket];
+        const std::uint32_t end = starts_[bucket + run];
+        while (e < end) {
+          // So many surely fit; each entry is written, and kept when it counts.
+          std::size_t batch = end - e;
+          if (batch > most - held) batch = most - held;
+          if (batch > candidates) batch = candidates;
+          candidates -= batch;
+          for (const std::uint32_t last = e + static_cast<std::uint32_t>(batch); e < last; ++e) {
+            const Entry& entry = entries_[e];
+            const float dx = entry.position.x - p.x, dy = entry.position.y - p.y, dz = entry.position.z - p.z;
+            const float square = dx * dx + dy * dy + dz * dz;
+            out.x[held] = dx;
+            out.y[held] = dy;
+            out.z[held] = dz;
+            out.square[held] = square;
+            out.index[held] = entry.index;
+            held += static_cast<std::size_t>(square <= limit) & static_cast<std::size_t>(rows_[e] == row);
+          }
+          if (held == most || candidates == 0) return held;
+        }
+        left -= run;
+        bucket = 0;
+      }
+    }
+  return held;
+}
+
 }  // namespace pliant

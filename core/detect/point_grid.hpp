@@ -36,6 +36,16 @@ class PointGrid {
   template <typename Visit>
   std::size_t visit_within(const Point3f& p, float radius, std::size_t most, Visit&& visit) const noexcept;
 
+  /// As visit_within(), but writes offsets from `p` (metres), squared distances and indices to arrays that
+  /// have room for most + 1 entries each. Points of other rows that share buckets are passed over without a
+  /// jump.
+  struct Gathered {
+    float *x, *y, *z, *square;
+    std::uint32_t* index;
+  };
+  [[nodiscard]] std::size_t gather_within(const Point3f& p, float radius, std::size_t most,
+                                          const Gathered& out) const noexcept;
+
   /// The nearest point within `radius` of `p` for which accept(index) holds, or kNone; of equals the lowest
   /// index.
   template <typename Accept>

@@ -57,6 +57,7 @@ PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot
       const float alike = known ? std::clamp((cosine - 0.5F) * 2.5F, 0.0F, 1.0F) : 0.5F;
       if (alike > 0) {
         ++evidence.agreeing;
+        evidence.close += along <= noise ? 1 : 0;
         const float ratio = along / limit;
         const float telling = noise > resolvable ? resolvable / noise : 1;
         evidence.agreement +=

@@ -14,6 +14,7 @@ namespace pliant {
 struct PoseEvidence {
   int facing = 0;        ///< all of the counts below
   int agreeing = 0;      ///< lie on the observed surface, with its normal
+  int close = 0;         ///< of the agreeing ones, are off by no more than 3 σ: noise alone explains it
   int floating = 0;      ///< lie in front of the observed surface: impossible, the camera sees through them
   int behind = 0;        ///< lie behind the observed surface: hidden by something
   int outside = 0;       ///< lie outside the picture or where there is no reading
@@ -22,6 +23,11 @@ struct PoseEvidence {
 
   double impossible = 0;  ///< of the floating points, each with how far in front it floats, [0, 1]
 
+  /// Share of the agreeing points that noise alone does not put where they are: next to nothing for the
+  /// object itself, a tenth to a third for something of a like shape.
+  [[nodiscard]] double unexplained() const noexcept {
+    return agreeing > 0 ? static_cast<double>(agreeing - close) / agreeing : 1;
+  }
   /// agreement − 1.5 · impossible − 0.3 · (behind, outside, crossing), as a share of the facing points: at
   /// most 1. Something that floats is impossible, something hidden or unseen merely unlikely.
   [[nodiscard]] double score() const noexcept {

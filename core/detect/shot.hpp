@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/detect/point_grid.hpp"
+#include "core/detect/shot_histogram.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/model/model_view.hpp"
 
@@ -35,7 +36,7 @@ class ShotDescriber {
   static constexpr std::size_t kMostNeighbours = 4096;  ///< further ones in the support are not looked at
   static constexpr std::size_t kLeastNeighbours = 12;   ///< fewer points tell nothing
 
-  /// Takes the scratch memory (about 96 kB).
+  /// Takes the scratch memory (about 230 kB).
   void lay_out(Workspace& workspace) noexcept;
 
   /// Descriptor and frame at `points.positions[index]` from the points within `support_radius` (metres),
@@ -54,12 +55,18 @@ class ShotDescriber {
                                  float* lean = nullptr) noexcept;
 
  private:
-  struct Neighbour {
-    float x, y, z;   // from the keypoint, in units of the support radius
-    float distance;  // the same unit
-    std::uint32_t index;
+  /// The points in the support, one array a quantity, padded so that whole groups of lanes may be read.
+  struct Support {
+    std::span<float> x, y, z;     // from the keypoint, in units of the support radius
+    std::span<float> distance;    // the same unit; 1 in the padding
+    std::span<float> nx, ny, nz;  // normals, unit length; 0 in the padding
+    std::span<std::uint32_t> index;
+    std::size_t count = 0;
   };
-  std::span<Neighbour> neighbours_;
+  [[nodiscard]] bool find_frame(LocalFrame& frame, float (&axes)[9], float* lean) const noexcept;
+
+  Support support_;
+  ShotBins bins_;
 };
 
 }  // namespace pliant

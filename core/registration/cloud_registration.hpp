@@ -102,6 +102,7 @@ struct RegistrationResult {
 };
 
 struct RegistrationState;
+struct SeenInstance;
 
 /// Registers clouds and depth pictures. Allocation-free: all memory is the block given to start(). Not
 /// thread-safe.
@@ -127,11 +128,16 @@ class CloudRegistration {
 
  private:
   void done(RegistrationStage stage, bool model_side = false) const noexcept;
-  /// Thins the scene and finds its normals; 0 when it is of no use (the outcome says why).
-  [[nodiscard]] std::size_t prepare(std::span<const Point3f> scene) noexcept;
+  /// Thins the scene; false when it is of no use (the outcome says why).
+  [[nodiscard]] bool inspect(std::span<const Point3f> scene) noexcept;
+  /// Normals of the thinned scene, of which nothing is explained yet.
+  void prepare() noexcept;
   /// Chain and deformed points of one instance from its base's pose (scene <- model).
   void complete(std::size_t number, const RigidTransform& pose, double score) noexcept;
   [[nodiscard]] const RegistrationResult& finish(std::size_t found) noexcept;
+  /// The picture's readings as a cloud, NaN where there is none; with instances only what stands around them.
+  void read_points(const DepthFrame& frame, const Intrinsics& camera, const SensorDescription& sensor,
+                   std::span<const SeenInstance> seen) noexcept;
   /// Instances in a cloud that was seen from one place and is drawn as a picture, by free space.
   [[nodiscard]] std::size_t search_one_view(const DepthFrame& frame, const Intrinsics& camera,
                                             const RigidTransform& scene_from_camera) noexcept;

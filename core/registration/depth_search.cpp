@@ -25,7 +25,9 @@ Intrinsics usual_camera(std::size_t pixels) noexcept {
 void lay_out(Workspace& workspace, const RegistrationState& s, const Intrinsics& camera, Surface& surface,
              FrameDetector& detector) noexcept {
   DetectSettings settings;
-  settings.rounds = 4;  // there is no next frame to try
+  // There is no next frame to try.
+  settings.rounds = 4;
+  settings.model_keypoints = 2048;
   settings.exhaustive = s.settings.max_instances > 1;
   surface.lay_out(workspace, camera);
   detector.lay_out(workspace, s.model, camera, settings);

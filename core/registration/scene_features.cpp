@@ -39,6 +39,7 @@ void describe_model(RegistrationState& s) noexcept {
   if (s.model_key_count <= s.model.keypoint_count()) {
     s.model_descriptors = s.model.descriptors().first(s.model_key_count);
     s.model_frames = s.model.frames().first(s.model_key_count);
+    s.matcher.prepare(s.model_descriptors);
     return;
   }
   if (!s.model_grid.build(s.model.positions(), grid_cell_for_support(s.support))) return;
@@ -48,6 +49,7 @@ void describe_model(RegistrationState& s) noexcept {
         s.describer.describe(cloud, s.model_grid, i, s.support, s.own_descriptors[i], s.own_frames[i]));
   s.model_descriptors = s.own_descriptors.first(s.model_key_count);
   s.model_frames = s.own_frames.first(s.model_key_count);
+  s.matcher.prepare(s.model_descriptors);
 }
 
 void thin_scene(RegistrationState& s, std::span<const Point3f> scene) noexcept {
@@ -129,7 +131,7 @@ void describe_keypoints(RegistrationState& s) noexcept {
 }
 
 void match_keypoints(RegistrationState& s) noexcept {
-  s.matcher.match(s.key_descriptors.first(s.posed_count), s.model_descriptors, 1, s.matches);
+  s.matcher.match(s.key_descriptors.first(s.posed_count), 1, s.matches);
   for (std::size_t k = 0; k < s.posed_count; ++k) {
     const Match& m = s.matches[k];
     s.posed[k] = {s.model.positions()[m.model], s.keys[k], s.model_frames[m.model], s.key_frames[k], m.dot};

@@ -54,21 +54,23 @@ std::vector<Body> bodies() {
 }
 
 TEST(DescriptorMatch, AllBodiesGiveTheSameBits) {
-  const std::vector<Descriptor> queries = random_descriptors(kDotQueries, 1);
+  const std::vector<Descriptor> queries = random_descriptors(4, 1);
   for (const std::size_t count : {1U, 2U, 3U, 17U, 500U}) {
     const std::vector<Descriptor> candidates = random_descriptors(count, 2);
-    std::vector<std::int16_t> expected(kDotQueries * count), got(kDotQueries * count);
-    dot_products_scalar(queries.data(), candidates.data(), count, expected.data());
-    for (std::size_t q = 0; q < kDotQueries; ++q) {
+    std::vector<std::uint32_t> which;
+    for (std::size_t k = count; k > 0; --k) which.push_back(static_cast<std::uint32_t>(k - 1));
+    for (const Descriptor& query : queries) {
+      std::vector<std::int16_t> expected(count), got(count + 1);
+      dot_products_scalar(query, candidates.data(), which.data(), count, expected.data());
       int sum = 0;
-      for (std::size_t k = 0; k < kDescriptorSize; ++k)
-        sum += queries[q].bins[k] * candidates[count - 1].bins[k];
-      EXPECT_EQ(expected[q * count + count - 1], sum);
-    }
-    for (const Body& body : bodies()) {
-      std::fill(got.begin(), got.end(), std::int16_t{-1});
-      body.kernel(queries.data(), candidates.data(), count, got.data());
-      EXPECT_EQ(got, expected) << body.name << " " << count;
+      for (std::size_t k = 0; k < kDescriptorSize; ++k) sum += query.bins[k] * candidates[0].bins[k];
+      EXPECT_EQ(expected[count - 1], sum);
+      for (const Body& body : bodies()) {
+        std::fill(got.begin(), got.end(), std::int16_t{-1});
+        body.kernel(query, candidates.data(), which.data(), count, got.data());
+        EXPECT_EQ(got[count], -1) << body.name;
+        EXPECT_TRUE(std::equal(expected.begin(), expected.end(), got.begin())) << body.name << " " << count;
+      }
     }
   }
 }
@@ -87,7 +89,8 @@ TEST(DescriptorMatch, FindsTheBestAndTheNextBest) {
   matcher.lay_out(workspace, candidates.size());
   matcher.start(Kernels::automatic);
   std::vector<Match> matches(queries.size() * 3);
-  matcher.match(queries, candidates, 3, matches);
+  matcher.prepare(candidates);
+  matcher.match(queries, 3, matches);
   for (std::size_t q = 0; q < queries.size(); ++q) {
     std::vector<std::pair<int, int>> all;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -100,9 +103,113 @@ TEST(DescriptorMatch, FindsTheBestAndTheNextBest) {
       EXPECT_EQ(matches[q * 3 + k].scene, q);
       EXPECT_EQ(matches[q * 3 + k].model, all[k].second);
       EXPECT_EQ(matches[q * 3 + k].dot, -all[k].first);
-      EXPECT_EQ(matches[q * 3 + k].second, -all[k + 1].first);
     }
   }
+}
+
+std::vector<std::pair<const char*, BoundKernels>> bound_bodies() {
+  std::vector<std::pair<const char*, BoundKernels>> all;
+  all.emplace_back("scalar", BoundKernels());
+#if defined(__x86_64__) || defined(__i386__)
+  if (__builtin_cpu_supports("sse4.1"))
+    all.emplace_back(
+        "sse4.1", BoundKernels{&descriptor_bounds_sse41, &select_bounds_scalar, &project_descriptor_scalar});
+  if (__builtin_cpu_supports("avx2"))
+    all.emplace_back("avx2",
+                     BoundKernels{&descriptor_bounds_avx2, &select_bounds_avx2, &project_descriptor_avx2});
+#endif
+  all.emplace_back("automatic", bound_kernels(Kernels::automatic));
+  return all;
+}
+
+TEST(DescriptorBounds, AllBodiesGiveTheSameBits) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> number(-4366, 4366);
+  for (const std::size_t blocks : {1U, 2U, 31U}) {
+    std::vector<ShortForm> queries(kBoundQueries);
+    for (ShortForm& q : queries)
+      for (std::int16_t& x : q.numbers) x = static_cast<std::int16_t>(number(random));
+    std::vector<std::int16_t> candidates(blocks * kBoundLanes * kBoundNumbers);
+    for (std::int16_t& x : candidates) x = static_cast<std::int16_t>(number(random));
+    // Equal candidates: the first must lead.
+    for (std::size_t k = 0; k < kBoundNumbers / 2; ++k)
+      for (std::size_t b = 1; b < blocks; ++b)
+        for (std::size_t j = 0; j < 2; ++j)
+          candidates[b * kBoundLanes * kBoundNumbers + (k * kBoundLanes + 5) * 2 + j] =
+              candidates[(k * kBoundLanes + 5) * 2 + j];
+    const std::size_t count = kBoundQueries * blocks * kBoundLanes;
+    std::vector<std::int32_t> expected(count), got(count);
+    std::vector<std::uint32_t> lead(kBoundQueries * kBoundLanes), got_lead(lead.size());
+    descriptor_bounds_scalar(queries.data(), candidates.data(), blocks, expected.data(), lead.data());
+    for (std::size_t q = 0; q < kBoundQueries; ++q) EXPECT_EQ(lead[q * kBoundLanes + 5], 5U);
+    for (const auto& [name, kernels] : bound_bodies()) {
+      std::fill(got.begin(), got.end(), -1);
+      kernels.bounds(queries.data(), candidates.data(), blocks, got.data(), got_lead.data());
+      EXPECT_EQ(got, expected) << name << " " << blocks;
+      EXPECT_EQ(got_lead, lead) << name << " " << blocks;
+      for (const std::size_t some : {count, count - 3, std::size_t{1}}) {
+        std::vector<std::uint32_t> selected(some + kBoundLanes), chosen(some + kBoundLanes);
+        const std::size_t left = select_bounds_scalar(got.data(), some, got[some / 2], selected.data());
+        EXPECT_EQ(kernels.select(got.data(), some, got[some / 2], chosen.data()), left) << name;
+        EXPECT_TRUE(std::equal(selected.begin(), selected.begin() + static_cast<std::ptrdiff_t>(left),
+                               chosen.begin()))
+            << name << " " << some;
+      }
+    }
+  }
+}
+
+TEST(DescriptorBounds, AllBodiesProjectToTheSameBits) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> number(-1, 1);
+  std::vector<float> basis(kDescriptorSize * kBoundNumbers);
+  for (float& b : basis) b = number(random);
+  for (const Descriptor& d : random_descriptors(4, 9)) {
+    float expected[kBoundNumbers], got[kBoundNumbers];
+    project_descriptor_scalar(d, basis.data(), expected);
+    for (const auto& [name, kernels] : bound_bodies()) {
+      kernels.project(d, basis.data(), got);
+      for (std::size_t k = 0; k < kBoundNumbers; ++k) EXPECT_EQ(got[k], expected[k]) << name << " " << k;
+    }
+  }
+}
+
+TEST(DescriptorBounds, NoDotProductIsAboveItsBound) {
+  for (const std::size_t count : {1U, 5U, 40U, 700U}) {
+    std::vector<Descriptor> candidates = random_descriptors(count, 11);
+    for (std::size_t k = 2; k < count; k += 7) candidates[k] = candidates[k / 2];
+    std::vector<Descriptor> queries = random_descriptors(kBoundQueries, 12);
+    queries[2] = candidates[count / 2];
+    AlignedBlock block(1 << 20);
+    Workspace workspace(block.span());
+    DescriptorBounds bounds;
+    bounds.lay_out(workspace, count);
+    bounds.start(Kernels::automatic);
+    bounds.build(candidates);
+    std::vector<std::int32_t> got(kBoundQueries * bounds.padded_size());
+    std::uint32_t lead[kBoundQueries * kBoundLanes];
+    bounds.bounds(queries.data(), got.data(), lead);
+    for (std::size_t q = 0; q < kBoundQueries; ++q)
+      for (std::size_t c = 0; c < count; ++c) {
+        int sum = 0;
+        for (std::size_t k = 0; k < kDescriptorSize; ++k) sum += queries[q].bins[k] * candidates[c].bins[k];
+        EXPECT_GE(got[q * bounds.padded_size() + c], DescriptorBounds::least_bound(sum)) << q << " " << c;
+        EXPECT_LE(sum, kBoundSlack + 18605);
+      }
+  }
+}
+
+TEST(DescriptorMatch, EqualDescriptorsGiveTheFirst) {
+  std::vector<Descriptor> candidates(100, random_descriptors(5, 13)[4]);
+  AlignedBlock block(1 << 20);
+  Workspace workspace(block.span());
+  DescriptorMatcher matcher;
+  matcher.lay_out(workspace, candidates.size());
+  matcher.start(Kernels::automatic);
+  matcher.prepare(candidates);
+  std::vector<Match> matches(3 * 5);
+  matcher.match(std::span(candidates).first(5), 3, matches);
+  for (std::size_t k = 0; k < matches.size(); ++k) EXPECT_EQ(matches[k].model, k % 3);
 }
 
 TEST(DescriptorMatch, BearsFewerCandidatesThanAskedFor) {
@@ -112,9 +219,11 @@ TEST(DescriptorMatch, BearsFewerCandidatesThanAskedFor) {
   DescriptorMatcher matcher;
   matcher.lay_out(workspace, 2);
   std::vector<Match> matches(12);
-  matcher.match(queries, candidates, 4, matches);
+  matcher.prepare(candidates);
+  matcher.match(queries, 4, matches);
   for (const Match& m : matches) EXPECT_LT(m.model, 2);
-  matcher.match(queries, {}, 4, matches);
+  matcher.prepare({});
+  matcher.match(queries, 4, matches);
 }
 
 LocalFrame frame_of(const Matrix3& axes) {

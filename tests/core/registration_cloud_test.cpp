@@ -140,6 +140,21 @@ TEST(CloudRegistration, FindsSeveralInstancesEachWithItsOwnRegions) {
   }
 }
 
+TEST(CloudRegistration, BallsOfTheObjectsSizeAreNotTheObject) {
+  // Such a ball lies within the tolerance of nearly half of the object, whatever its attitude.
+  for (const double radius : {0.08, 0.09, 0.1, 0.11, 0.12}) {
+    std::vector<Point3f> scene;
+    for (int ball = 0; ball < 3; ++ball)
+      for (int i = 0; i < 3000; ++i) {
+        const double z = 1 - 2 * (i + 0.5) / 3000, r = std::sqrt(1 - z * z), a = 2.4 * i;
+        scene.push_back(testing::point3f(Vector3(0.35 * ball - 0.3, 0.45, 0.9) +
+                                         radius * Vector3(r * std::cos(a), r * std::sin(a), z)));
+      }
+    RegistrationFixture fixture(scene.size());
+    EXPECT_EQ(fixture.registration.register_cloud(scene).outcome, RegistrationOutcome::not_found) << radius;
+  }
+}
+
 TEST(CloudRegistration, SaysNothingOfASceneWithoutTheObject) {
   const std::vector<Point3f> scene = cluttered(usual_pose(), false);
   RegistrationFixture fixture(scene.size());

@@ -1,0 +1,151 @@
+// The later stages of the search in a picture: poses proposed by single matches, judged, refined, decided on.
+#include <algorithm>
+#include <cmath>
+
+#include "core/detect/frame_detector.hpp"
+#include "core/detect/seam.hpp"
+
+namespace pliant {
+
+namespace {
+
+constexpr std::size_t kQuickPoints = 64;       // first look at a proposal
+constexpr std::size_t kCloseLookPoints = 200;  // second look
+constexpr std::size_t kAlignPoints = 400;      // full refinement
+constexpr double kPlainWeight =
+    0.3;  // of agreeing with a wall, at the first look: any pose can sink into one
+
+// What scores so low that clutter reaches it must have the descriptors on its side: of the keypoints that lie
+// on the object, so many have their best match near the right place. By chance about one in a hundred has.
+constexpr double kLeastSupport = 0.08;
+constexpr std::size_t kFewestSupporters = 4;
+
+Vector3 to_vector(const Point3f& p) noexcept {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+
+/// Rows of the frame as a rotation: local <- cloud.
+Matrix3 axes_of(const LocalFrame& frame) noexcept {
+  Matrix3 m;
+  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = frame.axes[static_cast<std::size_t>(i)] / 16384.0;
+  return m;
+}
+
+}  // namespace
+
+RigidTransform FrameDetector::pose_of(const Proposal& proposal) const noexcept {
+  const Matrix3 rotation =
+      axes_of(frames_[proposal.scene]).transpose() * axes_of(model_.frames()[proposal.model]);
+  return {rotation,
+          to_vector(key_points_[proposal.scene]) - rotation * to_vector(model_.positions()[proposal.model])};
+}
+
+std::int64_t FrameDetector::slice_propose() noexcept {
+  constexpr std::size_t kBatch = 128;
+  const std::size_t last = std::min(cursor_ + kBatch, proposal_count_);
+  for (; cursor_ < last; ++cursor_) {
+    Proposal& p = proposals_[cursor_];
+    p.score = static_cast<float>(
+        pose_evidence(model_, snapshot_, pose_of(p), kQuickPoints, coarse_, widest_, kPlainWeight).score());
+  }
+  if (cursor_ >= proposal_count_) {
+    shortlist_count_ = std::min(kShortlist, proposal_count_);
+    std::partial_sort(proposals_.begin(), proposals_.begin() + static_cast<std::ptrdiff_t>(shortlist_count_),
+                      proposals_.begin() + static_cast<std::ptrdiff_t>(proposal_count_),
+                      [](const Proposal& a, const Proposal& b) {
+                        if (a.score != b.score) return a.score > b.score;
+                        return a.scene != b.scene ? a.scene < b.scene : a.model < b.model;
+                      });
+    phase_ = Phase::shortlist;
+    cursor_ = 0;
+    if (hinted_ && round_ == 0) try_pose(hint_);
+  }
+  return static_cast<std::int64_t>(kBatch) * 8;
+}
+
+void FrameDetector::judge(PoseCandidate& candidate, std::size_t count, double floor) const noexcept {
+  candidate.evidence = pose_evidence(model_, snapshot_, candidate.pose, count, fine_, widest_);
+  candidate.score = candidate.evidence.score();
+  candidate.seamless = 0;
+  if (candidate.score <= 0 || candidate.score <= floor) return;  // the seam could only lower it
+  candidate.seamless = seam_evidence(model_, snapshot_, candidate.pose, kEvidencePoints, 0.5 * fine_).share();
+  candidate.score -= candidate.seamless;
+}
+
+void FrameDetector::try_pose(const RigidTransform& pose) noexcept {
+  PoseCandidate candidate;
+  candidate.pose = pose;
+  refine_pose(model_, snapshot_, kCloseLookPoints, coarse_, fine_, 4, candidate.pose);
+  // What scores below every finalist is dropped anyway.
+  judge(candidate, kCloseLookPoints, finalists_.floor());
+  finalists_.keep(candidate);
+}
+
+std::int64_t FrameDetector::slice_shortlist() noexcept {
+  if (cursor_ < shortlist_count_) {
+    try_pose(pose_of(proposals_[cursor_++]));
+  }
+  if (cursor_ >= shortlist_count_) {
+    phase_ = Phase::settle;
+    cursor_ = 0;
+  }
+  return 300;
+}
+
+std::int64_t FrameDetector::slice_settle() noexcept {
+  if (cursor_ < finalists_.all().size()) {
+    PoseCandidate& candidate = finalists_.all()[cursor_++];
+    // The object may have deformed: a pose that fits all of it fairly says that it is there, one that fits
+    // its largest rigid part closely says where.
+    refine_pose(model_, snapshot_, kAlignPoints, 2 * fine_, 0.5 * fine_, 6, candidate.pose);
+    judge(candidate, kEvidencePoints, -10);
+    PoseCandidate close = candidate;
+    refine_pose(model_, snapshot_, kAlignPoints, fine_, 0.1 * fine_, 8, close.pose);
+    judge(close, kEvidencePoints, -10);
+    const double score = std::max(candidate.score, close.score);
+    if (close.score > 0.5 * candidate.score) candidate = close;
+    candidate.score = score;
+  }
+  if (cursor_ >= finalists_.all().size()) decide();
+  return 1500;
+}
+
+bool FrameDetector::supported(const RigidTransform& pose) const noexcept {
+  const RigidTransform back = pose.inverse();
+  const std::size_t looked = std::min(kEvidencePoints, model_.size());
+  std::size_t on = 0, supporters = 0;
+  for (std::size_t k = 0; k < key_count_; ++k) {
+    const Vector3 key = back * to_vector(key_points_[k]);
+    const Vector3 out = key - model_.centre();
+    if (out.dot(out) > 1.21 * model_.radius() * model_.radius()) continue;
+    bool near = false;
+    for (std::size_t i = 0; i < looked && !near; ++i) {
+      const Vector3 gap = to_vector(model_.positions()[i]) - key;
+      near = gap.dot(gap) < coarse_ * coarse_;
+    }
+    if (!near) continue;
+    ++on;
+    const Vector3 gap = to_vector(model_.positions()[matches_[k * settings_.matches].model]) - key;
+    supporters += gap.dot(gap) < 4 * coarse_ * coarse_ ? 1U : 0U;
+  }
+  return supporters >= kFewestSupporters &&
+         static_cast<double>(supporters) >= kLeastSupport * static_cast<double>(on);
+}
+
+void FrameDetector::decide() noexcept {
+  best_ = finalists_.best();
+  const Verdict verdict = verdict_on(best_);
+  const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
+  const bool believed =
+      verdict.convincing || ((last || round_ >= 2) && verdict.last_resort && supported(best_.pose));
+  if (believed && (last || !settings_.exhaustive)) {
+    state_ = DetectState::found;
+  } else if (last) {
+    state_ = DetectState::nothing;
+  } else {
+    ++round_;
+    begin_round();
+  }
+}
+
+}  // namespace pliant

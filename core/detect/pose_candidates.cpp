@@ -1,0 +1,101 @@
+#include "core/detect/pose_candidates.hpp"
+
+#include <algorithm>
+
+namespace pliant {
+
+namespace {
+
+// What a pose must score, and how far below the best pose elsewhere must stay. Absent objects reach 0.2,
+// rarely 0.27, and then in several places; once every keypoint has been tried, a lone pose is believed
+// earlier.
+constexpr double kCertain = 0.45;
+constexpr double kConvincing = 0.28;
+constexpr double kLastResort = 0.2;
+constexpr double kRivalShare = 0.4;
+// Something round lies within the tolerance of much of another round thing, less closely than the object
+// itself would (PoseEvidence::unexplained), and in several attitudes. In pictures of clutter the sum of both
+// shares is 0.35 to 1; in those of objects, also deformed and real ones, up to 0.28.
+constexpr double kMostDoubt = 0.3;
+constexpr double kBeyondDoubt = 0.5;
+constexpr double kMostOutside =
+    0.4;  // of the facing points; with more out of the picture, only certainty counts
+
+// What noise may leave unexplained of any fit.
+constexpr double kSurelyUnexplained = 0.02;
+
+}  // namespace
+
+void PoseCandidates::start(const Vector3& centre, double radius) noexcept {
+  centre_ = centre;
+  radius_ = radius;
+  count_ = 0;
+}
+
+bool PoseCandidates::same_place(const RigidTransform& a, const RigidTransform& b) const noexcept {
+  const Vector3 apart = a * centre_ - b * centre_;
+  return apart.dot(apart) < 0.09 * radius_ * radius_ && cos_angle(a.rotation.transpose() * b.rotation) > 0.9;
+}
+
+void PoseCandidates::keep(const PoseCandidate& candidate) noexcept {
+  for (PoseCandidate& held : all())
+    if (same_place(held.pose, candidate.pose)) {
+      if (candidate.score > held.score) held = candidate;
+      return;
+    }
+  if (count_ < kMost) {
+    held_[count_++] = candidate;
+    return;
+  }
+  std::size_t worst = 0;
+  for (std::size_t k = 1; k < count_; ++k)
+    if (held_[k].score < held_[worst].score) worst = k;
+  if (candidate.score > held_[worst].score) held_[worst] = candidate;
+}
+
+double PoseCandidates::floor() const noexcept {
+  if (count_ < kMost) return -10;
+  double least = 10;
+  for (const PoseCandidate& held : all()) least = std::min(least, held.score);
+  return least;
+}
+
+Detection PoseCandidates::best() const noexcept {
+  Detection best;
+  if (count_ == 0) return best;
+  std::size_t first = 0;
+  for (std::size_t k = 1; k < count_; ++k)
+    if (held_[k].score > held_[first].score) first = k;
+  best.pose = held_[first].pose;
+  best.score = held_[first].score;
+  best.evidence = held_[first].evidence;
+  best.seamless = held_[first].seamless;
+  const double left = best.evidence.unexplained() + kSurelyUnexplained;
+  for (std::size_t k = 0; k < count_; ++k) {
+    const PoseCandidate& other = held_[k];
+    if (k == first || same_place(other.pose, best.pose)) continue;
+    const Vector3 apart = other.pose * centre_ - best.pose * centre_;
+    double& against = apart.dot(apart) < radius_ * radius_ ? best.twin : best.rival;
+    // What fits less closely speaks less against it.
+    const double weight = std::min(1.0, left / (other.evidence.unexplained() + kSurelyUnexplained));
+    against = std::max(against, other.score > 0 ? other.score * weight : other.score);
+  }
+  return best;
+}
+
+Verdict verdict_on(const Detection& detection) noexcept {
+  const bool lone = detection.rival <= kRivalShare * detection.score;
+  const bool in_sight = detection.evidence.outside <= kMostOutside * detection.evidence.facing;
+  // How much speaks for another thing of a like shape: what noise does not explain, and how well the model
+  // fits in another attitude.
+  const double doubt = detection.evidence.unexplained() +
+                       (detection.score > 0 ? std::max(detection.twin, 0.0) / detection.score : 0);
+  const bool itself = doubt <= kMostDoubt || detection.score >= kBeyondDoubt;
+  Verdict verdict;
+  verdict.convincing =
+      itself && (detection.score >= kCertain || (detection.score >= kConvincing && lone && in_sight));
+  verdict.last_resort = itself && lone && in_sight && detection.score >= kLastResort;
+  return verdict;
+}
+
+}  // namespace pliant

@@ -1,0 +1,63 @@
+// The poses that a search in a picture looked at closely, and what to make of them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "core/detect/pose_evidence.hpp"
+
+namespace pliant {
+
+struct Detection {
+  RigidTransform pose;    ///< camera <- model, in the frame given to begin()
+  double score = -10;     ///< PoseEvidence::score() of the refined pose less its seamless share, at most 1
+  double rival = -10;     ///< of the best pose at another place: more than the model's radius away
+  double twin = -10;      ///< of the best pose at the same place in another attitude: near `score` for a
+                          ///< symmetric object, whose attitude is then one of several
+  PoseEvidence evidence;  ///< over kEvidencePoints model points
+  double seamless = 0;    ///< SeamEvidence::share()
+};
+
+/// A pose that was looked at closely.
+struct PoseCandidate {
+  RigidTransform pose;
+  double score = -10;
+  PoseEvidence evidence;
+  double seamless = 0;
+};
+
+/// A few distinct poses, the better one of each place.
+class PoseCandidates {
+ public:
+  static constexpr std::size_t kMost = 12;
+
+  /// `centre` and `radius`: of the model, metres.
+  void start(const Vector3& centre, double radius) noexcept;
+  void clear() noexcept { count_ = 0; }
+  void keep(const PoseCandidate& candidate) noexcept;
+  /// What a further one must score to be kept at a place of its own; -10 while there is room.
+  [[nodiscard]] double floor() const noexcept;
+  [[nodiscard]] std::span<PoseCandidate> all() noexcept { return {held_.data(), count_}; }
+  [[nodiscard]] std::span<const PoseCandidate> all() const noexcept { return {held_.data(), count_}; }
+  /// The best one, with what speaks against it: poses that came to it while being refined are no rivals of
+  /// its.
+  [[nodiscard]] Detection best() const noexcept;
+
+ private:
+  [[nodiscard]] bool same_place(const RigidTransform& a, const RigidTransform& b) const noexcept;
+
+  Vector3 centre_ = Vector3::Zero();
+  double radius_ = 0;
+  std::array<PoseCandidate, kMost> held_;
+  std::size_t count_ = 0;
+};
+
+/// How far a detection may be believed.
+struct Verdict {
+  bool convincing = false;   ///< as it is
+  bool last_resort = false;  ///< once every keypoint was tried and the descriptors support it
+};
+[[nodiscard]] Verdict verdict_on(const Detection& detection) noexcept;
+
+}  // namespace pliant
