@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 struct RecordOptions {
-  std::string source, output;
+  std::string source, output, sensor;
   std::int64_t frames = -1;
 };
 
@@ -58,7 +58,13 @@ class Recorder {
 
 int record(const RecordOptions& options) {
   const StopSignal stop;
-  Result<OpenSource> source = open_source(options.source);
+  SourceOptions source_options;
+  if (!options.sensor.empty()) {
+    const Result<SensorFile> sensor = read_sensor(options.sensor);
+    if (!sensor) return report(sensor.error());
+    source_options.sensor = *sensor;
+  }
+  Result<OpenSource> source = open_source(options.source, source_options);
   if (!source) return report(source.error());
   Recorder recorder;
   if (const Outcome opened = recorder.open(options.output, *source); !opened) return report(opened.error());
@@ -104,6 +110,9 @@ void add_record(CLI::App& program, Work& work) {
   app->add_option("-o,--output", options->output, "Folder of the new recording")
       ->required()
       ->type_name("DIR");
+  app->add_option("--sensor", options->sensor,
+                  "Sensor description (TOML): mode, camera and noise of a device")
+      ->type_name("FILE");
   app->add_option("--frames", options->frames, "Take this many frames from the source")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))
       ->type_name("N");

@@ -133,6 +133,10 @@ void LiveSource::receive(std::int64_t until_ns, SourceItem& item) {
 
 void LiveSource::take(SourceItem& item, std::int64_t now) {
   last_frame_ns_ = now;
+  // Frames that the device says were left out keep their numbers.
+  const std::int64_t step = device_number_ < 0 ? 0 : item.frame.number - device_number_ - 1;
+  device_number_ = item.frame.number;
+  number_ += step > 0 && step < 1000 ? step : 0;
   item.frame.number = number_++;
   monitor_.set_state(DeviceState::streaming);
   StreamFault fault = StreamFault::broken;
@@ -215,6 +219,7 @@ void LiveSource::attempt(SourceItem& item) {
     judge_.restart();
     opened_ns_ = useful_ns_ = monotonic_ns();
     last_frame_ns_ = 0;
+    device_number_ = -1;
     pause_ns_ = std::min(2 * pause_ns_, kMostPause);  // until a frame proves that it works
     monitor_.reopened();
     monitor_.set_state(DeviceState::opening);

@@ -64,11 +64,12 @@ class LiveSource final : public DepthSource {
   double rate_;
   StreamJudge judge_;
   DeviceMonitor monitor_;
-  std::int64_t number_ = 0;         // of the next frame
-  std::int64_t opened_ns_ = 0;      // when the device was opened
-  std::int64_t last_frame_ns_ = 0;  // of this opening; 0 before the first
-  std::int64_t useful_ns_ = 0;      // the latest moment that the stream was usable, or begun
-  std::int64_t alive_ns_ = 0;       // as useful_ns_, but not begun anew by opening
+  std::int64_t number_ = 0;          // of the next frame
+  std::int64_t device_number_ = -1;  // the device's own of the latest, of this opening
+  std::int64_t opened_ns_ = 0;       // when the device was opened
+  std::int64_t last_frame_ns_ = 0;   // of this opening; 0 before the first
+  std::int64_t useful_ns_ = 0;       // the latest moment that the stream was usable, or begun
+  std::int64_t alive_ns_ = 0;        // as useful_ns_, but not begun anew by opening
   std::int64_t next_try_ns_ = 0, pause_ns_ = kFirstPause;
   std::uint64_t arrivals_seen_ = 0;
   int attempts_ = 0;
