@@ -16,9 +16,10 @@ struct SourceOptions {
   double patience = 60;              ///< seconds that a device may be gone before it is lost for good
 };
 
-inline constexpr const char* kLiveSources = "openni2:[URI], oni:FILE.oni";
+inline constexpr const char* kLiveSources =
+    "openni2:[URI], oni:FILE.oni, v4l2:/dev/videoN|usb-BUS[?format=Z16]";
 
-/// "openni2:", "openni2:URI" or "oni:FILE". Null for any other scheme.
+/// "openni2:", "openni2:URI", "oni:FILE" or "v4l2:PLACE". Null for any other scheme.
 [[nodiscard]] Result<std::unique_ptr<DepthSource>> open_live_input(const std::string& uri,
                                                                    const SourceOptions& options);
 
