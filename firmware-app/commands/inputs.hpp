@@ -15,7 +15,8 @@
 namespace pliant {
 
 inline constexpr const char* kSourceHelp =
-    "Where frames come from: recording:DIR, a device (openni2:[URI], v4l2:/dev/videoN), oni:FILE.oni, or "
+    "Where frames come from: recording:DIR, a device (openni2:[URI], v4l2:/dev/videoN), oni:FILE.oni, "
+    "lcmlog:FILE, or "
     "simulated:cushion|figure|box, with ?seed=1&noise=structure&frames=300 behind it if wanted";
 inline constexpr std::string_view kSourceExample = "simulated:cushion";
 

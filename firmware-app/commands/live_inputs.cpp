@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/lcm/depth_log.hpp"
 #include "drivers/openni2/openni2.hpp"
 #include "drivers/usb/usb_bus.hpp"
 #include "drivers/usb/usb_devices.hpp"
@@ -20,6 +21,7 @@ using Opened = Result<std::unique_ptr<DepthSource>>;
 constexpr std::string_view kOpenNi2 = "openni2:";
 constexpr std::string_view kOni = "oni:";
 constexpr std::string_view kV4l2 = "v4l2:";
+constexpr std::string_view kLcmLog = "lcmlog:";
 
 SourceWish wish_of(const SourceOptions& options) {
   SourceWish wish;
@@ -86,6 +88,7 @@ Opened open_live_input(const std::string& uri, const SourceOptions& options) {
   if (uri.starts_with(kOpenNi2)) return open_openni2_device(uri.substr(kOpenNi2.size()), options);
   if (uri.starts_with(kOni)) return open_oni_file(uri.substr(kOni.size()), options);
   if (uri.starts_with(kV4l2)) return open_v4l2_device(std::string_view(uri).substr(kV4l2.size()), options);
+  if (uri.starts_with(kLcmLog)) return open_depth_log(uri.substr(kLcmLog.size()), wish_of(options).sensor);
   return std::unique_ptr<DepthSource>();
 }
 

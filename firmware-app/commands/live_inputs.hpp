@@ -17,9 +17,9 @@ struct SourceOptions {
 };
 
 inline constexpr const char* kLiveSources =
-    "openni2:[URI], oni:FILE.oni, v4l2:/dev/videoN|usb-BUS[?format=Z16]";
+    "openni2:[URI], oni:FILE.oni, lcmlog:FILE, v4l2:/dev/videoN|usb-BUS[?format=Z16]";
 
-/// "openni2:", "openni2:URI", "oni:FILE" or "v4l2:PLACE". Null for any other scheme.
+/// "openni2:", "openni2:URI", "oni:FILE", "lcmlog:FILE" or "v4l2:PLACE". Null for any other scheme.
 [[nodiscard]] Result<std::unique_ptr<DepthSource>> open_live_input(const std::string& uri,
                                                                    const SourceOptions& options);
 
