@@ -41,18 +41,21 @@ Outcome check_oni_layout(const std::filesystem::path& path) {
   if (!file) return bad(std::strerror(errno));  // NOLINT(concurrency-mt-unsafe)
   const std::uint64_t size = std::filesystem::file_size(path, status);
   if (status) return bad(status.message());
-  static_cast<void>(size);
-  static_cast<void>(number_at);
-  static_cast<void>(kHeaderBytes);
-  static_cast<void>(kRecordMagic);
+  return check_oni_layout(file.get(), size, path.string());
+}
+
+Outcome check_oni_layout(std::FILE* file, std::uint64_t size, std::string_view name) {
+  const auto bad = [&](std::string_view what) {
+    return Error{ErrorKind::bad_input, fmt::format("{}: {}", name, what)};
+  };
   std::array<unsigned char, kRecordBytes> bytes{};
-  if (std::fread(bytes.data(), 1, kHeaderBytes, file.get()) != kHeaderBytes ||
+  if (std::fread(bytes.data(), 1, kHeaderBytes, file) != kHeaderBytes ||
       std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
     return bad("is not an .oni recording");
   std::uint64_t at = kHeaderBytes;
   for (;;) {
-    if (fseeko(file.get(), static_cast<off_t>(at), SEEK_SET) != 0 ||
-        std::fread(bytes.data(), 1, kRecordBytes, file.get()) != kRecordBytes)
+    if (fseeko(file, static_cast<off_t>(at), SEEK_SET) != 0 ||
+        std::fread(bytes.data(), 1, kRecordBytes, file) != kRecordBytes)
       return bad(fmt::format("is cut short at byte {}; was the program that recorded it stopped?", at));
     const std::uint64_t fields = number_at(&bytes[12]), payload = number_at(&bytes[16]);
     if (number_at(bytes.data()) != kRecordMagic || fields < kRecordBytes)
