@@ -95,9 +95,9 @@ int V4l2Buffers::take(V4l2Filled& filled) {
   filled.faulty = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0;
   filled.sequence = buffer.sequence;
   const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-  filled.stamp_us =
-      monotonic ? std::int64_t{buffer.timestamp.tv_sec} * 1'000'000 + std::int64_t{buffer.timestamp.tv_usec}
-                : 0;
+  const std::int64_t seconds = buffer.timestamp.tv_sec, microseconds = buffer.timestamp.tv_usec;
+  const bool sane = seconds >= 0 && seconds < 10'000'000'000 && microseconds >= 0 && microseconds < 1'000'000;
+  filled.stamp_us = monotonic && sane ? seconds * 1'000'000 + microseconds : 0;
   return 0;
 }
 
