@@ -18,7 +18,10 @@ constexpr std::array<unsigned char, 4> kMagic = {'N', 'I', '1', '0'};
 constexpr std::size_t kHeaderBytes = 24;            // magic, version (8), latest stamp (8), highest node (4)
 constexpr std::uint32_t kRecordMagic = 0x0052494E;  // "NIR"
 constexpr std::size_t kRecordBytes = 28;  // magic, type, node, bytes of fields, of payload, undo position (8)
-constexpr std::uint32_t kEnd = 11;        // the type of the last record
+constexpr std::uint32_t kFirstProperty = 3, kLastProperty = 6;  // of whole numbers, reals, texts, bytes
+constexpr std::uint32_t kIntProperty = 3, kRealProperty = 4, kNodeAdded = 13;
+constexpr std::uint32_t kLongestName = 256;  // with its zero
+constexpr std::uint32_t kEnd = 11;           // the type of the last record
 
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -27,6 +30,29 @@ struct Close {
 std::uint32_t number_at(const unsigned char* bytes) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8 | std::uint32_t{bytes[2]} << 16 |
          std::uint32_t{bytes[3]} << 24;
+}
+
+bool read_number(std::FILE* file, std::uint32_t& number) {
+  std::array<unsigned char, 4> bytes{};
+  if (std::fread(bytes.data(), 1, bytes.size(), file) != bytes.size()) return false;
+  number = number_at(bytes.data());
+  return true;
+}
+
+/// The fields behind a record's header begin with a name, and a property goes on with the length of its
+/// value. The library takes both as they are: letters beyond ASCII in a name end it in a crash.
+bool names_are_sound(std::FILE* file, std::uint32_t type, std::uint64_t fields) {
+  std::uint32_t length = 0;
+  if (!read_number(file, length) || length < 2 || length > kLongestName || kRecordBytes + 4 + length > fields)
+    return false;
+  for (std::uint32_t i = 0; i < length; ++i) {
+    const int c = std::fgetc(file);
+    if (i + 1 < length ? c < 0x20 || c >= 0x7f : c != 0) return false;
+  }
+  if (type == kNodeAdded) return true;
+  std::uint32_t bytes = 0;
+  if (!read_number(file, bytes) || kRecordBytes + 4 + length + 4 + bytes != fields) return false;
+  return (type != kIntProperty && type != kRealProperty) || bytes == 8;
 }
 
 }  // namespace
@@ -62,7 +88,11 @@ Outcome check_oni_layout(std::FILE* file, std::uint64_t size, std::string_view n
       return bad(fmt::format("is damaged at byte {}: no record begins there", at));
     if (fields + payload > size - at)
       return bad(fmt::format("is cut short: the record at byte {} leads beyond the end", at));
-    if (number_at(&bytes[4]) == kEnd) return success();
+    const std::uint32_t type = number_at(&bytes[4]);
+    if (type == kEnd) return success();
+    if (((type >= kFirstProperty && type <= kLastProperty) || type == kNodeAdded) &&
+        !names_are_sound(file, type, fields))
+      return bad(fmt::format("is damaged: the record at byte {} holds no sound name and value", at));
     at += fields + payload;
   }
 }

@@ -80,11 +80,12 @@ TEST_F(OpenNi2Run, SurvivesAPulledCable) {
 
 TEST_F(OpenNi2Run, GivesUpWhenTheDeviceStaysAway) {
   const std::string model = box_model();
+  rig_.control().rate = 15;
   write_file(at("c.toml"), "[sensor]\npatience_s = 0.5\n");
   const pid_t process = start_pliant({"run", "--source", "openni2:", "--config", at("c.toml"), "--model",
                                       model, "--lcm-url", "none", "--stats", at("s.json")},
                                      folder_);
-  for (int i = 0; i < 1500 && rig_.control().sent < 5; ++i) usleep(10'000);
+  for (int i = 0; i < 1500 && rig_.control().sent < 25; ++i) usleep(10'000);
   rig_.control().plugged = 0;
   const Ended ended = wait_for(process, folder_);
   EXPECT_EQ(ended.code, 3);
