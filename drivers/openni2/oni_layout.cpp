@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -19,9 +20,11 @@ constexpr std::size_t kHeaderBytes = 24;            // magic, version (8), lates
 constexpr std::uint32_t kRecordMagic = 0x0052494E;  // "NIR"
 constexpr std::size_t kRecordBytes = 28;  // magic, type, node, bytes of fields, of payload, undo position (8)
 constexpr std::uint32_t kFirstProperty = 3, kLastProperty = 6;  // of whole numbers, reals, texts, bytes
-constexpr std::uint32_t kIntProperty = 3, kRealProperty = 4, kNodeAdded = 13;
-constexpr std::uint32_t kLongestName = 256;  // with its zero
-constexpr std::uint32_t kEnd = 11;           // the type of the last record
+constexpr std::uint32_t kIntProperty = 3, kRealProperty = 4;
+constexpr std::array<std::uint32_t, 3> kNodeAdded = {2, 12, 13};  // of three versions
+constexpr std::uint32_t kHighestNode = 255;                       // the library makes room for all of them
+constexpr std::uint32_t kLongestName = 256;                       // with its zero
+constexpr std::uint32_t kEnd = 11;                                // the type of the last record
 
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -30,6 +33,10 @@ struct Close {
 std::uint32_t number_at(const unsigned char* bytes) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8 | std::uint32_t{bytes[2]} << 16 |
          std::uint32_t{bytes[3]} << 24;
+}
+
+bool is_node_added(std::uint32_t type) {
+  return std::find(kNodeAdded.begin(), kNodeAdded.end(), type) != kNodeAdded.end();
 }
 
 bool read_number(std::FILE* file, std::uint32_t& number) {
@@ -49,7 +56,7 @@ bool names_are_sound(std::FILE* file, std::uint32_t type, std::uint64_t fields) 
     const int c = std::fgetc(file);
     if (i + 1 < length ? c < 0x20 || c >= 0x7f : c != 0) return false;
   }
-  if (type == kNodeAdded) return true;
+  if (is_node_added(type)) return true;
   std::uint32_t bytes = 0;
   if (!read_number(file, bytes) || kRecordBytes + 4 + length + 4 + bytes != fields) return false;
   return (type != kIntProperty && type != kRealProperty) || bytes == 8;
@@ -78,6 +85,9 @@ Outcome check_oni_layout(std::FILE* file, std::uint64_t size, std::string_view n
   if (std::fread(bytes.data(), 1, kHeaderBytes, file) != kHeaderBytes ||
       std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
     return bad("is not an .oni recording");
+  if (number_at(&bytes[20]) > kHighestNode)
+    return bad("is damaged: it speaks of more streams than there can be");
+  std::array<bool, kHighestNode + 1> added{};
   std::uint64_t at = kHeaderBytes;
   for (;;) {
     if (fseeko(file, static_cast<off_t>(at), SEEK_SET) != 0 ||
@@ -90,7 +100,13 @@ Outcome check_oni_layout(std::FILE* file, std::uint64_t size, std::string_view n
       return bad(fmt::format("is cut short: the record at byte {} leads beyond the end", at));
     const std::uint32_t type = number_at(&bytes[4]);
     if (type == kEnd) return success();
-    if (((type >= kFirstProperty && type <= kLastProperty) || type == kNodeAdded) &&
+    if (is_node_added(type)) {
+      const std::uint32_t node = number_at(&bytes[8]);
+      if (node > kHighestNode || added[node])
+        return bad(fmt::format("is damaged: the record at byte {} adds a stream that cannot be", at));
+      added[node] = true;
+    }
+    if (((type >= kFirstProperty && type <= kLastProperty) || is_node_added(type)) &&
         !names_are_sound(file, type, fields))
       return bad(fmt::format("is damaged: the record at byte {} holds no sound name and value", at));
     at += fields + payload;
