@@ -23,7 +23,8 @@ namespace {
 
 struct RunOptions {
   std::string config;
-  std::optional<std::string> model, source, lcm_url;
+  std::optional<std::string> model, source, lcm_url, sensor;
+  bool publish_depth = false;
   std::string trajectory, points, stats;
   std::int64_t frames = -1;
   std::optional<std::string> pace;
@@ -48,6 +49,8 @@ Result<Config> merged_config(const RunOptions& options) {
   if (options.model) config.model = *options.model;
   if (options.source) config.source = *options.source;
   if (options.lcm_url) config.lcm.url = *options.lcm_url;
+  if (options.sensor) config.sensor.description = *options.sensor;
+  if (options.publish_depth) config.lcm.publish_depth = true;
   if (options.threads) config.run.threads = *options.threads;
   if (config.source.empty())
     return Error{ErrorKind::bad_input,
@@ -94,7 +97,14 @@ int run(const RunOptions& options) {
   const StopSignal stop;
   const Result<Config> config = merged_config(options);
   if (!config) return report(config.error());
-  Result<OpenSource> source = open_source(config->source);
+  SourceOptions source_options;
+  source_options.patience = config->sensor.patience_s;
+  if (!config->sensor.description.empty()) {
+    const Result<SensorFile> sensor = read_sensor(config->sensor.description);
+    if (!sensor) return report(sensor.error());
+    source_options.sensor = *sensor;
+  }
+  Result<OpenSource> source = open_source(config->source, source_options);
   if (!source) return report(source.error());
   if (config->model.empty() && !brings_own_model(config->source))
     return report({ErrorKind::bad_input,
@@ -107,11 +117,7 @@ int run(const RunOptions& options) {
   settings.source_name = config->source;
   settings.version = PLIANT_VERSION;
   settings.sensor = source->source->sensor();
-  if (!config->sensor.description.empty()) {
-    const Result<SensorFile> sensor = read_sensor(config->sensor.description);
-    if (!sensor) return report(sensor.error());
-    settings.sensor = sensor->noise;
-  }
+  if (source_options.sensor) settings.sensor = source_options.sensor->noise;
   settings.track.max_regions = config->track.max_regions;
   settings.track.material = config->track.material;
   settings.track.kernels = options.kernels;
@@ -155,6 +161,10 @@ void add_run(CLI::App& program, Work& work) {
   app->add_option("--model", options->model, "Model file; a simulated source brings its own")
       ->type_name("FILE");
   app->add_option("--source", options->source, kSourceHelp)->type_name("URI");
+  app->add_option("--sensor", options->sensor,
+                  "Sensor description (TOML): mode, camera and noise of a device")
+      ->type_name("FILE");
+  app->add_flag("--publish-depth", options->publish_depth, "Publish the depth frames too");
   app->add_option("--trajectory", options->trajectory, "Write the base region's path, TUM format")
       ->type_name("FILE");
   app->add_option("--points", options->points, "Write where every point is, a PLY file per tracked frame")

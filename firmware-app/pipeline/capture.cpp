@@ -22,7 +22,10 @@ void Capture::run() {
   while (!stopped() && (settings_.frame_limit < 0 || taken < settings_.frame_limit)) {
     source_.next(kPatienceMs, item);
     if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
-    if (item.event == SourceEvent::timeout) continue;
+    if (item.event == SourceEvent::timeout) {
+      if (!item.fault.empty()) note_fault(item.fault);
+      continue;
+    }
     ++taken;
     device_.store(DeviceState::streaming, std::memory_order_relaxed);
     const DepthFrame& frame = item.frame;
@@ -43,6 +46,12 @@ void Capture::run() {
   device_.store(item.event == SourceEvent::lost ? DeviceState::lost : DeviceState::ended,
                 std::memory_order_relaxed);
   ring_.close();
+}
+
+DeviceState Capture::device() const noexcept {
+  const DeviceState own = device_.load(std::memory_order_relaxed);
+  const bool over = own == DeviceState::ended || own == DeviceState::lost;
+  return over || monitor() == nullptr ? own : monitor()->state();
 }
 
 void Capture::wait_until_due(std::int64_t utime) {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "drivers/depth_source/depth_source.hpp"
-#include "drivers/lcm/messages.hpp"
 #include "firmware-app/pipeline/frame_ring.hpp"
 
 namespace pliant {
@@ -29,7 +28,10 @@ class Capture {
   [[nodiscard]] std::int64_t bad_frames() const noexcept {
     return bad_frames_.load(std::memory_order_relaxed);
   }
-  [[nodiscard]] DeviceState device() const noexcept { return device_.load(std::memory_order_relaxed); }
+  /// As the source's monitor says, and for a source without one: opening, streaming, ended.
+  [[nodiscard]] DeviceState device() const noexcept;
+  /// Null where the source watches no device.
+  [[nodiscard]] const DeviceMonitor* monitor() const noexcept { return source_.monitor(); }
   /// The latest fault, in one line; empty when there was none. Copied without a heap call.
   void copy_fault(std::span<char> text) const noexcept;
   [[nodiscard]] std::string fault() const;
