@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <system_error>
 #include <utility>
@@ -19,6 +18,7 @@ namespace pliant {
 
 namespace {
 constexpr int kRetryMs = 2000;
+constexpr std::chrono::seconds kModelEvery{1};
 }  // namespace
 
 Result<std::unique_ptr<LcmPublisher>> LcmPublisher::create(const LcmSettings& settings,
@@ -81,6 +81,7 @@ LcmPublisher::LcmPublisher(LcmUrl url, std::shared_ptr<LcmBus> bus, const LcmSet
     depths_ = std::make_unique<MessageRing>(kDepthSlots, depth_messages_->max_bodies(),
                                             depth_messages_->max_bytes());
   }
+  if (settings.model != nullptr) model_ = std::make_unique<ModelMessages>(*settings.model);
   connected_ = bus_ != nullptr;
   wake_descriptor_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor_ < 0) return;
@@ -180,7 +181,11 @@ void LcmPublisher::run() noexcept {
       sent = (depths_ != nullptr && send_waiting(*depths_, false)) || sent;
     } while (sent);
     woken_for_.store(handed_over, std::memory_order_release);
-    if (stopping) break;
+    if (stopping) {
+      // A run of few frames still leaves a whole model in a log.
+      while (model_part_ != 0) announce_model();
+      break;
+    }
 
     pollfd waiting{wake_descriptor_, POLLIN, 0};
     if (::poll(&waiting, 1, connected() ? -1 : kRetryMs) > 0) {
@@ -198,19 +203,36 @@ void LcmPublisher::run() noexcept {
 bool LcmPublisher::send_waiting(MessageRing& ring, bool tell) noexcept {
   MessageRing::Group group;
   if (!ring.take(group)) return false;
-  for (const MessageBody& body : group.bodies) {
-    const char* const channel = channels_[static_cast<std::size_t>(body.kind)].c_str();
-    if (bus_ != nullptr && lcm_publish(bus_->get(), channel, body.bytes.data(),
-                                       static_cast<unsigned int>(body.bytes.size())) == 0) {
-      messages_.fetch_add(1, std::memory_order_relaxed);
-      bytes_.fetch_add(static_cast<std::int64_t>(body.bytes.size()), std::memory_order_relaxed);
-    } else {
-      failures_.fetch_add(1, std::memory_order_relaxed);
-    }
-  }
+  for (const MessageBody& body : group.bodies) send(body);
   if (tell && observer_.group_sent != nullptr) observer_.group_sent(observer_.context, group.utime);
   ring.release();
+  if (tell) announce_model();
   return true;
+}
+
+bool LcmPublisher::send(const MessageBody& body) noexcept {
+  const char* const channel = channels_[static_cast<std::size_t>(body.kind)].c_str();
+  const bool sent = bus_ != nullptr && lcm_publish(bus_->get(), channel, body.bytes.data(),
+                                                   static_cast<unsigned int>(body.bytes.size())) == 0;
+  if (sent) {
+    messages_.fetch_add(1, std::memory_order_relaxed);
+    bytes_.fetch_add(static_cast<std::int64_t>(body.bytes.size()), std::memory_order_relaxed);
+  } else {
+    failures_.fetch_add(1, std::memory_order_relaxed);
+  }
+  return sent;
+}
+
+void LcmPublisher::announce_model() noexcept {
+  if (model_ == nullptr || bus_ == nullptr) return;
+  // A part after each frame: a whole model at once would be a burst that small receive buffers lose.
+  if (model_part_ == 0) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_model_) return;
+    next_model_ = now + kModelEvery;
+  }
+  send(model_->bodies()[model_part_]);
+  model_part_ = (model_part_ + 1) % model_->bodies().size();
 }
 
 void LcmPublisher::connect_again() noexcept {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "drivers/lcm/depth_messages.hpp"
 #include "drivers/lcm/lcm_bus.hpp"
 #include "drivers/lcm/message_ring.hpp"
+#include "drivers/lcm/model_messages.hpp"
 #include "drivers/lcm/status_message.hpp"
 #include "drivers/lcm/track_messages.hpp"
 
@@ -23,7 +25,8 @@ struct LcmSettings {
   std::string url;  ///< udpm://…, memq:// or file://PATH?mode=w; empty: $LCM_DEFAULT_URL, else kDefaultLcmUrl
   std::string prefix = "PLIANT";  ///< of the channels' names; 1 to 54 letters, digits, '_', '-', '.', '/'
   int depth_width = 0,
-      depth_height = 0;  ///< of the pictures given to publish_depth(), pixels; 0: never called
+      depth_height = 0;              ///< of the pictures given to publish_depth(), pixels; 0: never called
+  const ModelView* model = nullptr;  ///< announced once a second, a part after each frame; null: never
 };
 
 /// Called on the sending thread, for time and resource counts. Must not throw; may be left null.
@@ -91,6 +94,8 @@ class LcmPublisher {
   void warm_up() noexcept;
   bool send_waiting(MessageRing& ring, bool tell) noexcept;
   void wake() noexcept;
+  bool send(const MessageBody& body) noexcept;
+  void announce_model() noexcept;
 
   static constexpr std::size_t kStatusSlots = 4;
   static constexpr std::size_t kDepthSlots = 3;
@@ -102,6 +107,9 @@ class LcmPublisher {
   MessageRing frames_, statuses_;
   std::unique_ptr<DepthMessages> depth_messages_;
   std::unique_ptr<MessageRing> depths_;
+  std::unique_ptr<ModelMessages> model_;  // used by the sending thread alone, as are the next two
+  std::size_t model_part_ = 0;            // the next to be sent
+  std::chrono::steady_clock::time_point next_model_{};
   std::string warning_;
   int wake_descriptor_ = -1;
   std::atomic<bool> stop_{false}, connected_{false};
