@@ -39,6 +39,8 @@ int run_program(int count, char** words) {
   add_run(program, work);
   add_record(program, work);
   add_export(program, work);
+  add_plot(program, work);
+  add_snapshot(program, work);
   add_check(program, work);
   try {
     program.parse(count, words);
