@@ -41,6 +41,7 @@ int run_program(int count, char** words) {
   add_export(program, work);
   add_plot(program, work);
   add_snapshot(program, work);
+  add_view(program, work);
   add_check(program, work);
   try {
     program.parse(count, words);

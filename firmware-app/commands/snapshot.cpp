@@ -10,8 +10,7 @@
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/export/log_exporter.hpp"
 #include "firmware-app/measure/clock.hpp"
-#include "firmware-app/outputs/device_word.hpp"
-#include "firmware-app/outputs/run_report.hpp"
+#include "firmware-app/outputs/words.hpp"
 #include "firmware-app/pictures/scene_picture.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
 

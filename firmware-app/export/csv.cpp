@@ -8,8 +8,7 @@
 #include <filesystem>
 
 #include "firmware-app/export/exporters.hpp"
-#include "firmware-app/outputs/device_word.hpp"
-#include "firmware-app/outputs/run_report.hpp"
+#include "firmware-app/outputs/words.hpp"
 
 namespace pliant {
 

@@ -9,8 +9,7 @@
 #include "drivers/geometry_files/region_colours.hpp"
 #include "firmware-app/export/exporters.hpp"
 #include "firmware-app/export/mcap_writer.hpp"
-#include "firmware-app/outputs/device_word.hpp"
-#include "firmware-app/outputs/run_report.hpp"
+#include "firmware-app/outputs/words.hpp"
 
 namespace pliant {
 

@@ -75,9 +75,17 @@ void draw_stats_plot(const StatsSummary& stats, std::string_view title, double t
   for (double decade = low; decade <= high; ++decade) {
     const double x = x_of(std::pow(10, decade));
     svg.line(x, top + kHead - 4, x, bottom + 4, "#ccc");
-    svg.text(x, bottom + 20, time_text(std::pow(10, decade)), "middle", 12, "#555");
+    svg.text(x, bottom + 20,
+             decade < 3 ? fmt::format("{:g} \u00b5s", std::pow(10, decade))
+                        : fmt::format("{:g} ms", std::pow(10, decade - 3)),
+             "middle", 12, "#555");
   }
-  svg.text(kPlotWidth - kRight + 12, top + kHead - 6, "median   p99   max", "start", 12, "#555");
+  const auto column = [&](int number, double at, const std::string& words) {
+    svg.text(kPlotWidth - kRight + 80 * number, at, words, "end", 12, "#555");
+  };
+  column(1, top + kHead - 6, "median");
+  column(2, top + kHead - 6, "p99");
+  column(3, top + kHead - 6, "max");
   double y = top + kHead;
   for (const StageBar& bar : stats.bars) {
     const bool sum = bar.name == "total" || bar.name == "latency";
@@ -85,10 +93,9 @@ void draw_stats_plot(const StatsSummary& stats, std::string_view title, double t
     svg.box(kLeft, y + 5, x_of(bar.median_us) - kLeft, kRowHeight - 10, sum ? "#0072b2" : "#56b4e9");
     svg.line(x_of(bar.p99_us), y + 3, x_of(bar.p99_us), y + kRowHeight - 3, "#d55e00", 3);
     svg.circle(x_of(bar.max_us), y + kRowHeight / 2, 3.5, "#222");
-    svg.text(
-        kPlotWidth - kRight + 12, y + 17,
-        fmt::format("{}   {}   {}", time_text(bar.median_us), time_text(bar.p99_us), time_text(bar.max_us)),
-        "start", 12);
+    column(1, y + 17, time_text(bar.median_us));
+    column(2, y + 17, time_text(bar.p99_us));
+    column(3, y + 17, time_text(bar.max_us));
     y += kRowHeight;
   }
 }

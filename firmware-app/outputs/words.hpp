@@ -1,9 +1,21 @@
-// The words for a depth device's state.
+// The words for states, the same everywhere.
 #pragma once
 
 #include "drivers/lcm/messages.hpp"
 
 namespace pliant {
+
+[[nodiscard]] constexpr const char* state_word(TrackState state) {
+  switch (state) {
+    case TrackState::searching:
+      return "searching";
+    case TrackState::tracking:
+      return "tracking";
+    case TrackState::lost:
+      return "lost";
+  }
+  return "unknown";
+}
 
 [[nodiscard]] constexpr const char* device_word(DeviceState state) {
   switch (state) {
