@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +19,7 @@ namespace pliant {
 
 namespace {
 constexpr int kRetryMs = 2000;
+constexpr long kDepthPauseNs = 400'000;  // eleven parts of a VGA picture take 5 ms
 constexpr std::chrono::seconds kModelEvery{1};
 }  // namespace
 
@@ -45,9 +47,12 @@ Result<std::unique_ptr<LcmPublisher>> LcmPublisher::create(const LcmSettings& se
     warning =
         multicast_advice(*url, "what is sent does not come back, subscribers on this host hear nothing");
   }
+  if (bus != nullptr && warning.empty()) warning = multicast_reach_advice(*url);
   std::unique_ptr<LcmPublisher> publisher(
       new LcmPublisher(*url, std::move(bus), settings, model_points, observer));
   if (!publisher->thread_.joinable()) return Error{ErrorKind::device, "LCM: no thread can be started"};
+  if (publisher->depth_messages_ != nullptr && warning.empty())
+    warning = receive_buffer_advice(*url, publisher->depth_messages_->max_bytes());
   publisher->warning_ = std::move(warning);
   return publisher;
 }
@@ -203,7 +208,14 @@ void LcmPublisher::run() noexcept {
 bool LcmPublisher::send_waiting(MessageRing& ring, bool tell) noexcept {
   MessageRing::Group group;
   if (!ring.take(group)) return false;
-  for (const MessageBody& body : group.bodies) send(body);
+  for (const MessageBody& body : group.bodies) {
+    send(body);
+    // A picture at once would be a burst that small receive buffers lose.
+    if (body.kind == MessageKind::depth && url_.provider == LcmUrl::Provider::udp_multicast) {
+      const timespec pause{0, kDepthPauseNs};
+      ::clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, nullptr);
+    }
+  }
   if (tell && observer_.group_sent != nullptr) observer_.group_sent(observer_.context, group.utime);
   ring.release();
   if (tell) announce_model();

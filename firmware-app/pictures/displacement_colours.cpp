@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace pliant {
 
@@ -21,9 +22,16 @@ RegionColour displacement_colour(double displacement, double most) {
 }
 
 double displacement_scale(std::span<const float> lengths) {
-  double most = 0;
+  // The largest but for one in twenty: a few points gone astray must not make the rest pale.
+  std::vector<float> sorted;
   for (const float length : lengths)
-    if (std::isfinite(length)) most = std::max(most, static_cast<double>(length));
+    if (std::isfinite(length) && length > 0) sorted.push_back(length);
+  double most = 0;
+  if (!sorted.empty()) {
+    const auto at = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) * 19 / 20);
+    std::nth_element(sorted.begin(), at, sorted.end());
+    most = static_cast<double>(*at);
+  }
   for (double decade = 0.001; decade < 10; decade *= 10)
     for (const double step : {1.0, 2.0, 5.0})
       if (step * decade >= std::max(most, 0.005) - 1e-9) return step * decade;

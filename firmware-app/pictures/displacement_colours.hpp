@@ -10,8 +10,8 @@ namespace pliant {
 /// From pale yellow at 0 to dark red at `most` and beyond (both metres).
 [[nodiscard]] RegionColour displacement_colour(double displacement, double most);
 
-/// The scale's end for these lengths: their largest, rounded up to 1, 2 or 5 times a power of ten, at least 5
-/// mm. Metres.
+/// The scale's end for these lengths: what 95 % of those above 0 keep to, rounded up to 1, 2 or 5 times a
+/// power of ten, at least 5 mm. Metres.
 [[nodiscard]] double displacement_scale(std::span<const float> lengths);
 
 }  // namespace pliant

@@ -4,6 +4,8 @@
 #include <thread>
 #include <utility>
 
+#include "drivers/lcm/multicast_probe.hpp"
+
 namespace pliant::viewer {
 
 namespace {
@@ -75,7 +77,11 @@ void Listener::take_frame(bool whole) {
 
 void Listener::tell_link() {
   link_.others.assign(others_.begin(), others_.end());
-  link_.incomplete = frames_.incomplete() + depths_.incomplete();
+  constexpr std::size_t kPictureBytes = 2 * 640 * 480;
+  const std::int64_t incomplete = frames_.incomplete() + depths_.incomplete();
+  const auto url = LcmUrl::parse(link_.url);
+  if (incomplete > link_.incomplete && url) link_.advice = receive_buffer_advice(*url, kPictureBytes);
+  link_.incomplete = incomplete;
   stream_.publish(PacketKind::link, link_packet(link_));
 }
 

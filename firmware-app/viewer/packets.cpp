@@ -59,7 +59,8 @@ Bytes link_packet(const Link& link) {
                                    {"prefix", link.prefix},
                                    {"fault", link.fault},
                                    {"others", link.others},
-                                   {"incomplete", link.incomplete}});
+                                   {"incomplete", link.incomplete},
+                                   {"advice", link.advice}});
 }
 
 Bytes status_packet(const StatusMessage& s) {

@@ -16,6 +16,7 @@ struct Link {
   std::string fault;                ///< why nothing can be heard, with the mend; empty when all is well
   std::vector<std::string> others;  ///< prefixes of other trackers that were heard
   std::int64_t incomplete = 0;      ///< frames and pictures of which a message was lost
+  std::string advice;               ///< how fewer are lost; empty where there is nothing to say
 };
 
 using Bytes = std::vector<std::uint8_t>;

@@ -41,8 +41,11 @@ TEST(DisplacementColours, DarkenWithLengthAndStayAtTheirEnds) {
 
 TEST(DisplacementColours, TheScaleEndsAtARoundLength) {
   EXPECT_DOUBLE_EQ(displacement_scale({}), 0.005);
-  const std::vector<float> lengths = {0.001F, 0.0123F};
+  const std::vector<float> lengths = {0.011F, 0.0123F, 0};
   EXPECT_DOUBLE_EQ(displacement_scale(lengths), 0.02);
+  std::vector<float> with_a_stray(40, 0.018F);
+  with_a_stray.push_back(0.9F);
+  EXPECT_DOUBLE_EQ(displacement_scale(with_a_stray), 0.02);
 }
 
 TEST(ScenePicture, PointsAreDrawnWhereTheCameraSeesThem) {

@@ -53,7 +53,9 @@ function missing() {
       ? link.others.map((prefix) => `pliant view --prefix ${prefix}`)
       : ["pliant run --source simulated:cushion --pace realtime"];
     const advice = link.others.length > 0 ? "Another tracker publishes here:" : "Start a tracker, for example:";
-    return { title: `Nothing is published on ${link.prefix}_* at ${link.url}.`, advice, lines };
+    // One on another machine is heard only where its messages may leave that machine.
+    const remote = `A tracker on another machine publishes with: --lcm-url '${link.url.replace(/ttl=0/, "ttl=1")}'`;
+    return { title: `Nothing is published on ${link.prefix}_* at ${link.url}.`, advice, lines, remote };
   }
   if (!scene) return { title: "This browser has no WebGL: numbers only.", lines: [] };
   if (!model && panel.last?.state === "tracking")
@@ -72,7 +74,7 @@ function refresh() {
       const code = document.createElement("code");
       code.textContent = line;
       return code;
-    }));
+    }), fault.remote ?? "");
     if (connected && link && !link.fault && performance.now() - frameHeard > 2500 && !paused) panel.silence();
   }
   if (!paused) panel.tick(performance.now(), link);

@@ -54,6 +54,6 @@ export class Plot {
     });
     context.fillStyle = "#a4adb5";
     context.font = `${11 * ratio}px system-ui, sans-serif`;
-    context.fillText(most.toPrecision(2).replace(/e\+.*/, ""), 3 * ratio, 12 * ratio);
+    context.fillText(String(Number(most.toPrecision(2))), 3 * ratio, 12 * ratio);
   }
 }

@@ -167,7 +167,7 @@ export class Scene {
       }
       if (label === -2 && !this.showHidden) p[at] = p[at + 1] = p[at + 2] = NaN;
       const colour = model.palette[label + 2] ?? model.palette[2];
-      const dim = label === -2 ? 0.35 : 1;
+      const dim = label === -2 ? 0.7 : 1;
       for (let k = 0; k < 3; ++k) c[at + k] = colour[k] / 255 * dim;
     }
     const last = model.displacement.length - 1;
