@@ -17,10 +17,10 @@ namespace pliant::viewer {
 
 /// What a request brings along.
 struct Visit {
-  std::string_view host;    ///< its Host header
-  std::string_view origin;  ///< its Origin header, empty where there is none
-  std::string_view query;   ///< behind the question mark
-  std::string_view cookie;  ///< its Cookie header
+  std::string_view host = {};    ///< its Host header
+  std::string_view origin = {};  ///< its Origin header, empty where there is none
+  std::string_view query = {};   ///< behind the question mark
+  std::string_view cookie = {};  ///< its Cookie header
 };
 
 /// Without a token (a server on the loopback) the host must be the loopback's: a web site's own name that was
