@@ -109,10 +109,10 @@ export class Panel {
         row("shown here", `${(this.shown(performance.now())).toFixed(0)} frames/s`),
       ];
       if (link?.incomplete) rows.push(row("incomplete on the way", String(link.incomplete)));
-      if (link?.advice) rows.push(row("mend", link.advice, true));
       if (status.last_error) rows.push(row("last error", status.last_error, true));
       byId("numbers").replaceChildren(...rows);
     }
+    byId("advice").textContent = link?.advice ?? "";
     for (const plot of Object.values(this.plots)) plot.draw(now);
   }
 
