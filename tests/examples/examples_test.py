@@ -3,6 +3,7 @@
 import pathlib
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -19,6 +20,14 @@ def camera_of(folder):
     text = (folder / "camera.toml").read_text()
     values = dict(line.split("#")[0].split("=") for line in text.splitlines() if "=" in line.split("#")[0])
     return {key.strip(): value.strip() for key, value in values.items()}
+
+
+ROOT = pathlib.Path(options.examples).parents[1]
+
+
+def readme_program():
+    """The subscriber that README.md shows."""
+    return (ROOT / "README.md").read_text().split("```python\n")[1].split("```")[0]
 
 
 class Examples(unittest.TestCase):
@@ -39,6 +48,10 @@ class Examples(unittest.TestCase):
                                                             ("width", "height", "fx", "fy", "cx", "cy")), URL]}
         running, outputs = [], {}
         try:
+            if options.language == "python":
+                outputs["readme"] = open(folder / "readme.txt", "w+")
+                running.append(subprocess.Popen([sys.executable, "-B", "-u", "-c", readme_program()],
+                                                stdout=outputs["readme"], cwd=ROOT))
             for example, rest in words.items():
                 outputs[example] = open(folder / f"{example}.txt", "w+")
                 running.append(subprocess.Popen(languages.command(options, example, class_path) + rest,
@@ -69,7 +82,7 @@ class Examples(unittest.TestCase):
         return [struct.unpack_from("<6f2i", data, 39 * i) for i in range(len(data) // 39)]
 
     def test_all_of_them_keep_running(self):
-        self.assertEqual(self.alive, [True, True, True])
+        self.assertTrue(all(self.alive), self.alive)
 
     def test_the_path_that_is_followed_is_that_of_the_tracker(self):
         path = [[float(word) for word in line.split()] for line in (self.folder / "path.txt").read_text().splitlines()]
@@ -82,6 +95,13 @@ class Examples(unittest.TestCase):
                 for a, b in zip(pose, (tx, ty, tz, qw, qx, qy, qz)):
                     self.assertAlmostEqual(a, b, 5)
         self.assertGreater(found, 0.8 * len(path))
+
+    @unittest.skipUnless(options.language == "python", "the README shows Python")
+    def test_the_subscriber_of_the_readme_prints_the_same_poses(self):
+        self.assertLessEqual(len([line for line in readme_program().splitlines() if line]), 10)
+        shown = {int(words[0]) for words in self.lines["readme"]}
+        followed = {int(words[0]) for words in self.lines["follow_pose"]}
+        self.assertGreater(len(shown & followed), 0.8 * len(followed))
 
     def test_the_points_listed_moved_more_than_the_threshold(self):
         lines = self.lines["list_deformed"]

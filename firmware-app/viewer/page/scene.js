@@ -194,7 +194,7 @@ export class Scene {
 
   setAxes(regions) {
     while (this.axes.length < regions.length) {
-      this.axes.push(new THREE.AxesHelper(1));
+      this.axes.push(new THREE.AxesHelper(1).setColors(0xff5050, 0x50d060, 0x5090ff));
       this.root.add(this.axes.at(-1));
     }
     this.axes.forEach((helper, i) => {
