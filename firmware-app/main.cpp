@@ -38,11 +38,11 @@ int run_program(int count, char** words) {
   add_register(program, work);
   add_run(program, work);
   add_record(program, work);
-  add_export(program, work);
-  add_plot(program, work);
-  add_snapshot(program, work);
-  add_view(program, work);
   add_check(program, work);
+  add_view(program, work);
+  add_snapshot(program, work);
+  add_plot(program, work);
+  add_export(program, work);
   try {
     program.parse(count, words);
   } catch (const CLI::Success& wanted) {  // --help, --version

@@ -92,7 +92,7 @@ bool ModelAssembler::take(const ModelMessage& message) {
   return true;
 }
 
-bool DepthAssembler::take(const DepthMessage& message) {
+bool PictureAssembler::take(const DepthMessage& message) {
   const Intrinsics& camera = message.camera;
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
   if (seen_.empty() || picture_.utime != message.utime || picture_.frame != message.frame ||

@@ -66,7 +66,7 @@ struct ReceivedDepth {
   std::vector<std::uint16_t> depth;  ///< rows from the top; 0 = no reading
 };
 
-class DepthAssembler {
+class PictureAssembler {
  public:
   /// True when this message made a picture whole: picture() is it until the next call.
   [[nodiscard]] bool take(const DepthMessage& message);

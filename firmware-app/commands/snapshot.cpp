@@ -126,7 +126,7 @@ Outcome look_at_bus(const SnapshotOptions& options, Seen& seen) {
   const StopSignal stop;
   FrameAssembler frames;
   ModelAssembler models;
-  DepthAssembler depths;
+  PictureAssembler depths;
   ReceivedFrame newest;
   bool any = false, fresh = false;
   LcmSubscriber::Handlers handlers;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/event_log.hpp"
 
 namespace pliant {
 
@@ -28,7 +28,7 @@ class Walker {
   Walker(std::span<const ReceivedModel> models, std::span<LogExporter* const> exporters)
       : models_(models), exporters_(exporters) {}
 
-  Outcome take(const LcmEvent& event, std::string_view suffix) {
+  Outcome take(const LoggedEvent& event, std::string_view suffix) {
     const auto is = [&](MessageKind kind) { return suffix == channel_suffix(kind); };
     const std::int64_t at = event.received_us;
     if (is(MessageKind::pose) && decode(event.body, pose_))
@@ -78,7 +78,7 @@ class Walker {
   std::span<const ReceivedModel> models_;
   std::span<LogExporter* const> exporters_;
   FrameAssembler frames_;
-  DepthAssembler depths_;
+  PictureAssembler depths_;
   std::vector<Point3f> positions_;
   LogFigures figures_;
   PoseMessage pose_;
@@ -98,12 +98,12 @@ Error nothing_in(const std::string& path, std::string_view prefix, const std::se
 }  // namespace
 
 Result<std::vector<ReceivedModel>> models_in_log(const std::string& path, std::string_view prefix) {
-  Result<LcmLogReader> log = LcmLogReader::open(path);
+  Result<EventLogReader> log = EventLogReader::open(path);
   if (!log) return log.error();
   std::vector<ReceivedModel> models;
   ModelAssembler assembler;
   ModelMessage message;
-  LcmEvent event;
+  LoggedEvent event;
   while (models.size() < kMostModels && log->next(event)) {
     if (suffix_of(event.channel, prefix) != channel_suffix(MessageKind::model)) continue;
     if (!decode(event.body, message) || !assembler.take(message)) continue;
@@ -117,12 +117,12 @@ Result<std::vector<ReceivedModel>> models_in_log(const std::string& path, std::s
 
 Result<LogFigures> walk_log(const std::string& path, std::string_view prefix,
                             std::span<const ReceivedModel> models, std::span<LogExporter* const> exporters) {
-  Result<LcmLogReader> log = LcmLogReader::open(path);
+  Result<EventLogReader> log = EventLogReader::open(path);
   if (!log) return log.error();
   Walker walker(models, exporters);
   std::set<std::string> others;
   bool any = false;
-  LcmEvent event;
+  LoggedEvent event;
   while (log->next(event)) {
     const std::string_view suffix = suffix_of(event.channel, prefix);
     if (suffix.empty()) {

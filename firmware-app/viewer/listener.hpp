@@ -43,7 +43,7 @@ class Listener {
   lcm_subscription_t* everybody_ = nullptr;
   FrameAssembler frames_;
   ModelAssembler models_;
-  DepthAssembler depths_;
+  PictureAssembler depths_;
   Clock::time_point next_try_{}, next_link_{}, heard_{};
 };
 

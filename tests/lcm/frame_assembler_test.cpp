@@ -94,7 +94,7 @@ TEST(FrameAssembler, PointsArePlacedByTheirRegionOrByThemselves) {
   EXPECT_TRUE(places.empty()) << "another model's points have no place";
 }
 
-TEST(DepthAssembler, APictureComesBackAndOneWithAHoleDoesNot) {
+TEST(PictureAssembler, APictureComesBackAndOneWithAHoleDoesNot) {
   constexpr int kWidth = 640, kHeight = 300;
   std::vector<std::uint16_t> pixels(static_cast<std::size_t>(kWidth) * kHeight);
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint16_t>(i * 7);
@@ -110,7 +110,7 @@ TEST(DepthAssembler, APictureComesBackAndOneWithAHoleDoesNot) {
   frame.width = frame.stride = kWidth;
   frame.height = kHeight;
   DepthMessages messages(kWidth, kHeight);
-  DepthAssembler assembler;
+  PictureAssembler assembler;
   DepthMessage message;
   int pictures = 0;
   for (std::int64_t number = 0; number < 3; ++number) {

@@ -205,7 +205,7 @@ TEST_F(LcmNetwork, PicturesArriveWholeInTheReceiveBufferThatSystemsHave) {
   settings.depth_height = 480;
   const auto publisher = LcmPublisher::create(settings, 100);
   ASSERT_TRUE(publisher);
-  DepthAssembler assembler;
+  PictureAssembler assembler;
   int pictures = 0;
   LcmSubscriber::Handlers handlers;
   handlers.depth = [&](const DepthMessage& message) { pictures += assembler.take(message) ? 1 : 0; };

@@ -1,4 +1,4 @@
-#include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/event_log.hpp"
 
 #include <array>
 #include <cerrno>
@@ -19,8 +19,8 @@ constexpr std::uint32_t kMaxBody = 1U << 26;
 
 }  // namespace
 
-Result<LcmLogReader> LcmLogReader::open(const std::string& path) {
-  LcmLogReader reader;
+Result<EventLogReader> EventLogReader::open(const std::string& path) {
+  EventLogReader reader;
   reader.file_.reset(std::fopen(path.c_str(), "rbe"));
   if (!reader.file_)
     return Error{ErrorKind::bad_input,
@@ -36,7 +36,7 @@ Result<LcmLogReader> LcmLogReader::open(const std::string& path) {
   return reader;
 }
 
-bool LcmLogReader::next(LcmEvent& event) {
+bool EventLogReader::next(LoggedEvent& event) {
   std::array<std::uint8_t, kHeaderBytes> header{};
   const std::size_t got = std::fread(header.data(), 1, header.size(), file_.get());
   if (got == 0) return false;

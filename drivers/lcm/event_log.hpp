@@ -11,20 +11,20 @@
 
 namespace pliant {
 
-struct LcmEvent {
+struct LoggedEvent {
   std::int64_t received_us = 0;  ///< when the logger took it, microseconds since the epoch
   std::string channel;
   std::vector<std::uint8_t> body;
 };
 
 /// Holds one event in memory, whatever the file says. A file cut short ends at its last whole event.
-class LcmLogReader {
+class EventLogReader {
  public:
   /// ErrorKind::bad_input where the file cannot be read or is no LCM log.
-  [[nodiscard]] static Result<LcmLogReader> open(const std::string& path);
+  [[nodiscard]] static Result<EventLogReader> open(const std::string& path);
 
   /// The next event into `event`, whose storage is reused; false at the end.
-  [[nodiscard]] bool next(LcmEvent& event);
+  [[nodiscard]] bool next(LoggedEvent& event);
   /// Whether bytes after the last whole event could not be read as one.
   [[nodiscard]] bool damaged() const { return damaged_; }
 

@@ -1,5 +1,5 @@
 // Logs as LCM itself writes them, and files that are none.
-#include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/event_log.hpp"
 
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
@@ -12,11 +12,11 @@
 namespace pliant {
 namespace {
 
-class LcmLog : public ::testing::Test {
+class EventLog : public ::testing::Test {
  protected:
-  LcmLog()
+  EventLog()
       : path_(std::filesystem::temp_directory_path() / ("pliant_log_test_" + std::to_string(::getpid()))) {}
-  ~LcmLog() override { std::filesystem::remove(path_); }
+  ~EventLog() override { std::filesystem::remove(path_); }
   void write_with_lcm() const {
     lcm_eventlog_t* const log = lcm_eventlog_create(path_.c_str(), "w");
     ASSERT_NE(log, nullptr);
@@ -36,11 +36,11 @@ class LcmLog : public ::testing::Test {
   std::filesystem::path path_;
 };
 
-TEST_F(LcmLog, ReadsWhatLcmWrote) {
+TEST_F(EventLog, ReadsWhatLcmWrote) {
   write_with_lcm();
-  auto reader = LcmLogReader::open(path_.string());
+  auto reader = EventLogReader::open(path_.string());
   ASSERT_TRUE(reader) << reader.error().message;
-  LcmEvent event;
+  LoggedEvent event;
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(reader->next(event));
     EXPECT_EQ(event.channel, "CHANNEL_" + std::to_string(i));
@@ -52,24 +52,24 @@ TEST_F(LcmLog, ReadsWhatLcmWrote) {
   EXPECT_FALSE(reader->damaged());
 }
 
-TEST_F(LcmLog, AFileCutShortEndsAtItsLastWholeEvent) {
+TEST_F(EventLog, AFileCutShortEndsAtItsLastWholeEvent) {
   write_with_lcm();
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 1);
-  auto reader = LcmLogReader::open(path_.string());
+  auto reader = EventLogReader::open(path_.string());
   ASSERT_TRUE(reader);
-  LcmEvent event;
+  LoggedEvent event;
   EXPECT_TRUE(reader->next(event));
   EXPECT_TRUE(reader->next(event));
   EXPECT_FALSE(reader->next(event));
   EXPECT_TRUE(reader->damaged());
 }
 
-TEST_F(LcmLog, WhatIsNoLogIsRefused) {
-  EXPECT_NE(LcmLogReader::open("/nowhere/x.log").error().message.find("/nowhere/x.log"), std::string::npos);
+TEST_F(EventLog, WhatIsNoLogIsRefused) {
+  EXPECT_NE(EventLogReader::open("/nowhere/x.log").error().message.find("/nowhere/x.log"), std::string::npos);
   std::ofstream(path_) << "";
-  EXPECT_NE(LcmLogReader::open(path_.string()).error().message.find("empty"), std::string::npos);
+  EXPECT_NE(EventLogReader::open(path_.string()).error().message.find("empty"), std::string::npos);
   std::ofstream(path_) << "ply\n";
-  EXPECT_NE(LcmLogReader::open(path_.string()).error().message.find("not an LCM log"), std::string::npos);
+  EXPECT_NE(EventLogReader::open(path_.string()).error().message.find("not an LCM log"), std::string::npos);
 }
 
 }  // namespace
