@@ -86,7 +86,6 @@ LcmPublisher::LcmPublisher(LcmUrl url, std::shared_ptr<LcmBus> bus, const LcmSet
     depths_ = std::make_unique<MessageRing>(kDepthSlots, depth_messages_->max_bodies(),
                                             depth_messages_->max_bytes());
   }
-  if (settings.model != nullptr) model_ = std::make_unique<ModelMessages>(*settings.model);
   connected_ = bus_ != nullptr;
   wake_descriptor_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_descriptor_ < 0) return;
@@ -110,6 +109,11 @@ LcmPublisher::~LcmPublisher() {
   wake();
   if (thread_.joinable()) thread_.join();
   if (wake_descriptor_ >= 0) ::close(wake_descriptor_);
+}
+
+void LcmPublisher::announce(const ModelView& model) {
+  model_ = std::make_unique<ModelMessages>(model);
+  announced_.store(model_.get(), std::memory_order_release);
 }
 
 void LcmPublisher::publish(std::span<const MessageBody> bodies, std::int64_t utime) noexcept {
@@ -236,15 +240,16 @@ bool LcmPublisher::send(const MessageBody& body) noexcept {
 }
 
 void LcmPublisher::announce_model() noexcept {
-  if (model_ == nullptr || bus_ == nullptr) return;
+  const ModelMessages* const model = announced_.load(std::memory_order_acquire);
+  if (model == nullptr || bus_ == nullptr) return;
   // A part after each frame: a whole model at once would be a burst that small receive buffers lose.
   if (model_part_ == 0) {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_model_) return;
     next_model_ = now + kModelEvery;
   }
-  send(model_->bodies()[model_part_]);
-  model_part_ = (model_part_ + 1) % model_->bodies().size();
+  send(model->bodies()[model_part_]);
+  model_part_ = (model_part_ + 1) % model->bodies().size();
 }
 
 void LcmPublisher::connect_again() noexcept {

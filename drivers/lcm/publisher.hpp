@@ -25,8 +25,7 @@ struct LcmSettings {
   std::string url;  ///< udpm://…, memq:// or file://PATH?mode=w; empty: $LCM_DEFAULT_URL, else kDefaultLcmUrl
   std::string prefix = "PLIANT";  ///< of the channels' names; 1 to 54 letters, digits, '_', '-', '.', '/'
   int depth_width = 0,
-      depth_height = 0;              ///< of the pictures given to publish_depth(), pixels; 0: never called
-  const ModelView* model = nullptr;  ///< announced once a second, a part after each frame; null: never
+      depth_height = 0;  ///< of the pictures given to publish_depth(), pixels; 0: never called
 };
 
 /// Called on the sending thread, for time and resource counts. Must not throw; may be left null.
@@ -77,6 +76,10 @@ class LcmPublisher {
   /// give way to newer ones likewise.
   void publish_depth(const DepthFrame& frame, const Intrinsics& camera) noexcept;
 
+  /// From now on `model` is sent about once a second while frames are, a part after each frame. Called at
+  /// most once, before the first frame; it allocates.
+  void announce(const ModelView& model);
+
   /// Waits until everything handed over before was sent, at most `timeout_ms`; false when it was not.
   [[nodiscard]] bool flush(int timeout_ms) const noexcept;
 
@@ -107,8 +110,9 @@ class LcmPublisher {
   MessageRing frames_, statuses_;
   std::unique_ptr<DepthMessages> depth_messages_;
   std::unique_ptr<MessageRing> depths_;
-  std::unique_ptr<ModelMessages> model_;  // used by the sending thread alone, as are the next two
-  std::size_t model_part_ = 0;            // the next to be sent
+  std::unique_ptr<ModelMessages> model_;
+  std::atomic<const ModelMessages*> announced_{nullptr};  // the same, for the sending thread
+  std::size_t model_part_ = 0;  // the next to be sent; of the sending thread, as is the next
   std::chrono::steady_clock::time_point next_model_{};
   std::string warning_;
   int wake_descriptor_ = -1;

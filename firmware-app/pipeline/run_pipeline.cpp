@@ -96,17 +96,15 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   TrackMessages messages(model.positions(), model.header().checksum);
   std::unique_ptr<LcmPublisher> publisher;
   if (settings.lcm_url != "none") {
-    Result<std::unique_ptr<LcmPublisher>> made =
-        LcmPublisher::create({.url = settings.lcm_url,
-                              .prefix = settings.lcm_prefix,
-                              .depth_width = settings.publish_depth ? camera.width : 0,
-                              .depth_height = settings.publish_depth ? camera.height : 0,
-                              .model = &model},
-                             model.size(), send_watch.observer());
+    Result<std::unique_ptr<LcmPublisher>> made = LcmPublisher::create(
+        {settings.lcm_url, settings.lcm_prefix, settings.publish_depth ? camera.width : 0,
+         settings.publish_depth ? camera.height : 0},
+        model.size(), send_watch.observer());
     if (!made) return made.error();
     publisher = std::move(*made);
     warn(settings, publisher->warning());
   }
+  if (publisher != nullptr) publisher->announce(model);
 
   LiveFigures live;
   Capture capture(
