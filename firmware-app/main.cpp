@@ -40,6 +40,10 @@ int run_program(int count, char** words) {
   add_record(program, work);
   add_devices(program, work);
   add_check(program, work);
+  add_view(program, work);
+  add_snapshot(program, work);
+  add_plot(program, work);
+  add_export(program, work);
   try {
     program.parse(count, words);
   } catch (const CLI::Success& wanted) {  // --help, --version

@@ -166,4 +166,19 @@ inline constexpr std::uint64_t kDepthFingerprint = FingerprintBuilder()
                                                        .field("byte", "depth", {{"num_bytes", true}})
                                                        .value();
 
+inline constexpr std::uint64_t kModelFingerprint =
+    FingerprintBuilder()
+        .field("int64_t", "model_id")
+        .field("int16_t", "part")
+        .field("int16_t", "parts")
+        .field("int32_t", "model_points")
+        .field("int32_t", "first_point")
+        .field("int32_t", "num_points")
+        .field("float", "spacing")
+        .field("float", "origin", {{"3"}})
+        .field("float", "step")
+        .field("int16_t", "position", {{"num_points", true}, {"3"}})
+        .field("int8_t", "normal", {{"num_points", true}, {"3"}})
+        .value();
+
 }  // namespace pliant::wire

@@ -73,6 +73,8 @@ Result<LcmUrl> parse_multicast(std::string_view url, std::string_view network, s
     return number.has_value();
   });
   if (!fault.empty()) return bad_url(url, fault);
+  result.ttl = static_cast<int>(ttl);
+  result.receive_buffer = static_cast<int>(receive_buffer);
   result.spelled =
       "udpm://" + result.group_text + ":" + std::to_string(result.port) + "?ttl=" + std::to_string(ttl);
   if (receive_buffer > 0) result.spelled += "&recv_buf_size=" + std::to_string(receive_buffer);

@@ -19,6 +19,8 @@ struct LcmUrl {
   std::uint32_t group = 0;  ///< IPv4 multicast address, host byte order; udp_multicast only
   std::uint16_t port = 0;   ///< udp_multicast only
   std::string group_text;   ///< dotted
+  int ttl = 0;              ///< networks that messages may cross, 0: this host only; udp_multicast only
+  int receive_buffer = 0;   ///< bytes asked for, 0: the system's default; udp_multicast only
   bool writes = true;       ///< false for a log file that is read
   std::string spelled;      ///< in full, for lcm_create()
 

@@ -67,8 +67,8 @@ bool whole(const wire::Reader& in) {
 }  // namespace
 
 std::string_view channel_suffix(MessageKind kind) noexcept {
-  constexpr std::array<std::string_view, kMessageKinds> kSuffixes = {"_POSE", "_REGIONS", "_DEFORMED",
-                                                                     "_STATUS", "_DEPTH"};
+  constexpr std::array<std::string_view, kMessageKinds> kSuffixes = {"_POSE",   "_REGIONS", "_DEFORMED",
+                                                                     "_STATUS", "_DEPTH",   "_MODEL"};
   return kSuffixes[static_cast<std::size_t>(kind)];
 }
 
@@ -206,6 +206,41 @@ bool decode(std::span<const std::uint8_t> body, DepthMessage& message) {
   message.depth.resize(bytes.size() / 2);
   for (std::size_t i = 0; i < message.depth.size(); ++i) {
     message.depth[i] = static_cast<std::uint16_t>(bytes[2 * i] | (bytes[2 * i + 1] << 8));
+  }
+  return whole(in);
+}
+
+bool decode(std::span<const std::uint8_t> body, ModelMessage& message) {
+  wire::Reader in(body);
+  if (!starts_with(in, wire::kModelFingerprint)) return false;
+  message.model_id = in.get<std::int64_t>();
+  if (!read_parts(in, message.part, message.parts)) return false;
+  message.model_points = in.get<std::int32_t>();
+  message.first_point = in.get<std::int32_t>();
+  constexpr std::size_t kPointBytes = 3 * (sizeof(std::int16_t) + sizeof(std::int8_t));
+  const std::size_t count = in.get_count(kPointBytes, limits::kMaxModelPoints);
+  message.spacing = in.get<float>();
+  std::array<float, 3> origin{};
+  const bool finite = read_finite(in, origin);
+  const auto step = in.get<float>();
+  if (!in.ok() || !finite || !(message.spacing >= 0) || !std::isfinite(message.spacing) || !(step > 0) ||
+      !std::isfinite(step) || message.model_points < 0 ||
+      message.model_points > static_cast<std::int32_t>(limits::kMaxModelPoints) || message.first_point < 0 ||
+      message.first_point > message.model_points - static_cast<std::int32_t>(count)) {
+    return false;
+  }
+  message.position.resize(count);
+  for (Point3f& point : message.position) {
+    std::array<float, 3> xyz{};
+    for (std::size_t i = 0; i < 3; ++i)
+      xyz[i] = origin[i] + step * static_cast<float>(in.get<std::int16_t>());
+    point = {xyz[0], xyz[1], xyz[2]};
+  }
+  message.normal.resize(count);
+  for (Point3f& normal : message.normal) {
+    std::array<float, 3> xyz{};
+    for (float& value : xyz) value = static_cast<float>(in.get<std::int8_t>()) / 127.0F;
+    normal = {xyz[0], xyz[1], xyz[2]};
   }
   return whole(in);
 }

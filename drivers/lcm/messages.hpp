@@ -17,10 +17,10 @@
 namespace pliant {
 
 /// The channels; a frame's messages are sent in this order.
-enum class MessageKind : std::uint8_t { pose, regions, deformed, status, depth };
-inline constexpr int kMessageKinds = 5;
+enum class MessageKind : std::uint8_t { pose, regions, deformed, status, depth, model };
+inline constexpr int kMessageKinds = 6;
 
-/// "_POSE", "_REGIONS", "_DEFORMED", "_STATUS", "_DEPTH".
+/// "_POSE", "_REGIONS", "_DEFORMED", "_STATUS", "_DEPTH", "_MODEL".
 [[nodiscard]] std::string_view channel_suffix(MessageKind kind) noexcept;
 
 /// No message body is longer, but for depth.
@@ -91,6 +91,15 @@ struct DepthMessage {
   std::vector<std::uint16_t> depth;  ///< whole rows, from `first_row` on; raw units, 0 = no reading
 };
 
+struct ModelMessage {
+  std::int64_t model_id = 0;
+  std::int16_t part = 0, parts = 1;
+  std::int32_t model_points = 0, first_point = 0;
+  float spacing = 0;              ///< metres
+  std::vector<Point3f> position;  ///< model frame, metres
+  std::vector<Point3f> normal;    ///< of unit length to within 2 %
+};
+
 /// Decode a message body of any origin. False, and `message` of no use, where the body is not a whole, sound
 /// message of its type: wrong fingerprint, cut short, bytes left over, counts or indices out of range,
 /// numbers that are not finite, quaternions that are not unit. Storage in `message` is reused.
@@ -99,5 +108,6 @@ struct DepthMessage {
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, DeformedMessage& message);
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, StatusMessage& message);
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, DepthMessage& message);
+[[nodiscard]] bool decode(std::span<const std::uint8_t> body, ModelMessage& message);
 
 }  // namespace pliant

@@ -1,14 +1,19 @@
 #include "drivers/lcm/multicast_probe.hpp"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 namespace pliant {
 
@@ -45,6 +50,42 @@ bool join(const Socket& socket, const sockaddr_in& group) noexcept {
   membership.imr_multiaddr = group.sin_addr;
   membership.imr_interface.s_addr = htonl(INADDR_ANY);
   return ::setsockopt(socket.get(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &membership, sizeof(membership)) == 0;
+}
+
+/// The device of the kernel's main routing table that leads to `address` (network byte order); empty when
+/// none does. The table prints addresses as they lie in memory.
+std::string device_towards(in_addr_t address) {
+  std::ifstream table("/proc/net/route");
+  std::string line, found;
+  std::getline(table, line);
+  int longest = -1;
+  while (std::getline(table, line)) {
+    std::istringstream fields(line);
+    std::string device, skipped;
+    std::uint32_t destination = 0, mask = 0;
+    fields >> device >> std::hex >> destination >> skipped >> skipped >> skipped >> skipped >> skipped >>
+        mask;
+    if (!fields || (address & mask) != destination || std::popcount(mask) <= longest) continue;
+    longest = std::popcount(mask);
+    found = device;
+  }
+  return found;
+}
+
+/// The first network device that leads out of this host; the usual name where there is none.
+std::string outward_device() {
+  std::string name = "eth0";
+  ifaddrs* devices = nullptr;
+  if (::getifaddrs(&devices) != 0) return name;
+  for (const ifaddrs* device = devices; device != nullptr; device = device->ifa_next) {
+    constexpr unsigned kFit = IFF_UP | IFF_MULTICAST;
+    if ((device->ifa_flags & kFit) == kFit && (device->ifa_flags & IFF_LOOPBACK) == 0) {
+      name = device->ifa_name;
+      break;
+    }
+  }
+  ::freeifaddrs(devices);
+  return name;
 }
 
 }  // namespace
@@ -89,6 +130,35 @@ bool multicast_comes_back(const LcmUrl& url) noexcept {
 std::string multicast_advice(const LcmUrl& url, std::string_view fault) {
   return "LCM at " + url.spelled + ": " + std::string(fault) +
          "; mend: sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo";
+}
+
+std::string multicast_reach_advice(const LcmUrl& url) {
+  if (url.ttl == 0) return {};
+  if (device_towards(htonl(url.group)) != "lo") return {};
+  return "LCM at " + url.spelled +
+         ": multicast is routed to the loopback, so nothing reaches other hosts; mend: sudo ip route replace "
+         "224.0.0.0/4 dev " +
+         outward_device();
+}
+
+std::string receive_buffer_advice(const LcmUrl& url, std::size_t needed) {
+  if (url.provider != LcmUrl::Provider::udp_multicast) return {};
+  const Socket socket;
+  if (url.receive_buffer > 0) {
+    ::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &url.receive_buffer, sizeof(url.receive_buffer));
+  }
+  int bytes = 0;
+  socklen_t size = sizeof(bytes);
+  if (::getsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &bytes, &size) != 0 || bytes < 0 ||
+      static_cast<std::size_t>(bytes) >= needed) {
+    return {};
+  }
+  std::size_t enough = std::size_t{1} << 21;
+  while (enough < 2 * needed) enough *= 2;
+  return "LCM at " + url.spelled + ": subscribers have room for " + std::to_string(bytes / 1000) +
+         " kB on their way, a picture of " + std::to_string(needed / 1000) +
+         " kB may be lost; mend: sudo sysctl -w net.core.rmem_max=" + std::to_string(enough) +
+         " net.core.rmem_default=" + std::to_string(enough);
 }
 
 }  // namespace pliant

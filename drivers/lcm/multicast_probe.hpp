@@ -2,6 +2,7 @@
 // seconds.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "drivers/lcm/lcm_url.hpp"
@@ -17,5 +18,13 @@ namespace pliant {
 
 /// One line: `fault` and the commands that mend it.
 [[nodiscard]] std::string multicast_advice(const LcmUrl& url, std::string_view fault);
+
+/// Where the URL lets messages leave this host (ttl above 0) but multicast is routed to the loopback: one
+/// line with the command that mends it. Empty when all is well.
+[[nodiscard]] std::string multicast_reach_advice(const LcmUrl& url);
+
+/// Where a subscriber on this host has less room for messages on their way than `needed` bytes, sent in one
+/// go: one line with the command that mends it. Empty when there is room.
+[[nodiscard]] std::string receive_buffer_advice(const LcmUrl& url, std::size_t needed);
 
 }  // namespace pliant

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
+#include <ctime>
 #include <system_error>
 #include <utility>
 
@@ -19,6 +19,8 @@ namespace pliant {
 
 namespace {
 constexpr int kRetryMs = 2000;
+constexpr long kDepthPauseNs = 400'000;  // eleven parts of a VGA picture take 5 ms
+constexpr std::chrono::seconds kModelEvery{1};
 }  // namespace
 
 Result<std::unique_ptr<LcmPublisher>> LcmPublisher::create(const LcmSettings& settings,
@@ -45,9 +47,12 @@ Result<std::unique_ptr<LcmPublisher>> LcmPublisher::create(const LcmSettings& se
     warning =
         multicast_advice(*url, "what is sent does not come back, subscribers on this host hear nothing");
   }
+  if (bus != nullptr && warning.empty()) warning = multicast_reach_advice(*url);
   std::unique_ptr<LcmPublisher> publisher(
       new LcmPublisher(*url, std::move(bus), settings, model_points, observer));
   if (!publisher->thread_.joinable()) return Error{ErrorKind::device, "LCM: no thread can be started"};
+  if (publisher->depth_messages_ != nullptr && warning.empty())
+    warning = receive_buffer_advice(*url, publisher->depth_messages_->max_bytes());
   publisher->warning_ = std::move(warning);
   return publisher;
 }
@@ -104,6 +109,11 @@ LcmPublisher::~LcmPublisher() {
   wake();
   if (thread_.joinable()) thread_.join();
   if (wake_descriptor_ >= 0) ::close(wake_descriptor_);
+}
+
+void LcmPublisher::announce(const ModelView& model) {
+  model_ = std::make_unique<ModelMessages>(model);
+  announced_.store(model_.get(), std::memory_order_release);
 }
 
 void LcmPublisher::publish(std::span<const MessageBody> bodies, std::int64_t utime) noexcept {
@@ -180,7 +190,11 @@ void LcmPublisher::run() noexcept {
       sent = (depths_ != nullptr && send_waiting(*depths_, false)) || sent;
     } while (sent);
     woken_for_.store(handed_over, std::memory_order_release);
-    if (stopping) break;
+    if (stopping) {
+      // A run of few frames still leaves a whole model in a log.
+      while (model_part_ != 0) announce_model();
+      break;
+    }
 
     pollfd waiting{wake_descriptor_, POLLIN, 0};
     if (::poll(&waiting, 1, connected() ? -1 : kRetryMs) > 0) {
@@ -199,18 +213,43 @@ bool LcmPublisher::send_waiting(MessageRing& ring, bool tell) noexcept {
   MessageRing::Group group;
   if (!ring.take(group)) return false;
   for (const MessageBody& body : group.bodies) {
-    const char* const channel = channels_[static_cast<std::size_t>(body.kind)].c_str();
-    if (bus_ != nullptr && lcm_publish(bus_->get(), channel, body.bytes.data(),
-                                       static_cast<unsigned int>(body.bytes.size())) == 0) {
-      messages_.fetch_add(1, std::memory_order_relaxed);
-      bytes_.fetch_add(static_cast<std::int64_t>(body.bytes.size()), std::memory_order_relaxed);
-    } else {
-      failures_.fetch_add(1, std::memory_order_relaxed);
+    send(body);
+    // A picture at once would be a burst that small receive buffers lose.
+    if (body.kind == MessageKind::depth && url_.provider == LcmUrl::Provider::udp_multicast) {
+      const timespec pause{0, kDepthPauseNs};
+      ::clock_nanosleep(CLOCK_MONOTONIC, 0, &pause, nullptr);
     }
   }
   if (tell && observer_.group_sent != nullptr) observer_.group_sent(observer_.context, group.utime);
   ring.release();
+  if (tell) announce_model();
   return true;
+}
+
+bool LcmPublisher::send(const MessageBody& body) noexcept {
+  const char* const channel = channels_[static_cast<std::size_t>(body.kind)].c_str();
+  const bool sent = bus_ != nullptr && lcm_publish(bus_->get(), channel, body.bytes.data(),
+                                                   static_cast<unsigned int>(body.bytes.size())) == 0;
+  if (sent) {
+    messages_.fetch_add(1, std::memory_order_relaxed);
+    bytes_.fetch_add(static_cast<std::int64_t>(body.bytes.size()), std::memory_order_relaxed);
+  } else {
+    failures_.fetch_add(1, std::memory_order_relaxed);
+  }
+  return sent;
+}
+
+void LcmPublisher::announce_model() noexcept {
+  const ModelMessages* const model = announced_.load(std::memory_order_acquire);
+  if (model == nullptr || bus_ == nullptr) return;
+  // A part after each frame: a whole model at once would be a burst that small receive buffers lose.
+  if (model_part_ == 0) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_model_) return;
+    next_model_ = now + kModelEvery;
+  }
+  send(model->bodies()[model_part_]);
+  model_part_ = (model_part_ + 1) % model->bodies().size();
 }
 
 void LcmPublisher::connect_again() noexcept {

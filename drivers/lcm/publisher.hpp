@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "drivers/lcm/depth_messages.hpp"
 #include "drivers/lcm/lcm_bus.hpp"
 #include "drivers/lcm/message_ring.hpp"
+#include "drivers/lcm/model_messages.hpp"
 #include "drivers/lcm/status_message.hpp"
 #include "drivers/lcm/track_messages.hpp"
 
@@ -74,6 +76,10 @@ class LcmPublisher {
   /// give way to newer ones likewise.
   void publish_depth(const DepthFrame& frame, const Intrinsics& camera) noexcept;
 
+  /// From now on `model` is sent about once a second while frames are, a part after each frame. Called at
+  /// most once, before the first frame; it allocates.
+  void announce(const ModelView& model);
+
   /// Waits until everything handed over before was sent, at most `timeout_ms`; false when it was not.
   [[nodiscard]] bool flush(int timeout_ms) const noexcept;
 
@@ -91,6 +97,8 @@ class LcmPublisher {
   void warm_up() noexcept;
   bool send_waiting(MessageRing& ring, bool tell) noexcept;
   void wake() noexcept;
+  bool send(const MessageBody& body) noexcept;
+  void announce_model() noexcept;
 
   static constexpr std::size_t kStatusSlots = 4;
   static constexpr std::size_t kDepthSlots = 3;
@@ -102,6 +110,10 @@ class LcmPublisher {
   MessageRing frames_, statuses_;
   std::unique_ptr<DepthMessages> depth_messages_;
   std::unique_ptr<MessageRing> depths_;
+  std::unique_ptr<ModelMessages> model_;
+  std::atomic<const ModelMessages*> announced_{nullptr};  // the same, for the sending thread
+  std::size_t model_part_ = 0;  // the next to be sent; of the sending thread, as is the next
+  std::chrono::steady_clock::time_point next_model_{};
   std::string warning_;
   int wake_descriptor_ = -1;
   std::atomic<bool> stop_{false}, connected_{false};

@@ -50,6 +50,7 @@ LcmSubscriber::~LcmSubscriber() {
 bool LcmSubscriber::subscribe() {
   for (int kind = 0; kind < kMessageKinds; ++kind) {
     if (static_cast<MessageKind>(kind) == MessageKind::depth && !handlers_.depth) continue;
+    if (static_cast<MessageKind>(kind) == MessageKind::model && !handlers_.model) continue;
     std::string pattern;
     // LCM takes a regular expression; '.' is the only allowed character that means something else there.
     for (const char c : prefix_) pattern += c == '.' ? std::string("\\.") : std::string(1, c);
@@ -105,6 +106,9 @@ void LcmSubscriber::take(std::span<const std::uint8_t> body, std::string_view ch
   } else if (suffix == channel_suffix(MessageKind::depth)) {
     kind = MessageKind::depth;
     sound = decode_and_tell(body, depth_, handlers_.depth);
+  } else if (suffix == channel_suffix(MessageKind::model)) {
+    kind = MessageKind::model;
+    sound = decode_and_tell(body, model_, handlers_.model);
   }
   if (!sound) {
     ++counters_.garbage;

@@ -25,6 +25,7 @@ class LcmSubscriber {
     std::function<void(const StatusMessage&)> status;
     std::function<void(const DepthMessage&)>
         depth;  ///< the depth channel is only subscribed to when this is set
+    std::function<void(const ModelMessage&)> model;  ///< likewise
   };
   struct Counters {
     std::array<std::int64_t, kMessageKinds> decoded{};  ///< by MessageKind
@@ -71,6 +72,7 @@ class LcmSubscriber {
   DeformedMessage deformed_;
   StatusMessage status_;
   DepthMessage depth_;
+  ModelMessage model_;
 };
 
 }  // namespace pliant

@@ -19,5 +19,9 @@ void add_register(CLI::App& program, Work& work);
 void add_record(CLI::App& program, Work& work);
 void add_devices(CLI::App& program, Work& work);
 void add_check(CLI::App& program, Work& work);
+void add_view(CLI::App& program, Work& work);
+void add_snapshot(CLI::App& program, Work& work);
+void add_plot(CLI::App& program, Work& work);
+void add_export(CLI::App& program, Work& work);
 
 }  // namespace pliant

@@ -122,8 +122,7 @@ int run(const Options& options) {
       print(fmt::format("model: {} points; source: {}, {} frames of {}x{}\n", model->view().size(),
                         options.source, frames, source.intrinsics().width, source.intrinsics().height)));
 
-  Snapshots snapshots(source.intrinsics(), model->view().size(), model->view().spacing(),
-                      picture_frames(frames));
+  Snapshots snapshots(source.intrinsics(), model->view(), picture_frames(frames));
   TruthCheck check(model->view(), source);
   struct Witnesses {
     Snapshots& snapshots;

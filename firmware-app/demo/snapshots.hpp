@@ -8,6 +8,7 @@
 
 #include "core/camera/depth_frame.hpp"
 #include "core/camera/intrinsics.hpp"
+#include "core/model/model_view.hpp"
 #include "core/track_result.hpp"
 #include "drivers/common/result.hpp"
 
@@ -17,8 +18,8 @@ namespace pliant::demo {
 /// the start; look() makes no heap call.
 class Snapshots {
  public:
-  Snapshots(const Intrinsics& camera, std::size_t model_points, double spacing,
-            std::span<const std::int64_t> frames);
+  /// `model`'s memory must outlive this.
+  Snapshots(const Intrinsics& camera, const ModelView& model, std::span<const std::int64_t> frames);
   void look(const DepthFrame& frame, const TrackResult& result);
 
   /// Depth in grey, the observed points in their regions' colours, a key: NNNNNN.png for each frame taken.
@@ -37,7 +38,7 @@ class Snapshots {
   [[nodiscard]] Outcome draw(const Shot& shot, const std::string& path) const;
 
   Intrinsics camera_;
-  double spacing_;
+  ModelView model_;
   std::vector<Shot> shots_;
   std::size_t next_ = 0;
 };

@@ -38,18 +38,6 @@ std::string time_row(const char* name, const Histogram& histogram) {
 
 }  // namespace
 
-const char* state_word(TrackState state) {
-  switch (state) {
-    case TrackState::searching:
-      return "searching";
-    case TrackState::tracking:
-      return "tracking";
-    case TrackState::lost:
-      return "lost";
-  }
-  return "unknown";
-}
-
 std::string stats_json(const RunFigures& f) {
   Json stages;
   for (int i = 0; i <= kStageCount; ++i)

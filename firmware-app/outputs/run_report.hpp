@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "firmware-app/outputs/words.hpp"
 #include "firmware-app/pipeline/run_figures.hpp"
 
 namespace pliant {
@@ -15,8 +16,5 @@ namespace pliant {
 
 /// The live status, without a line end.
 [[nodiscard]] std::string status_line(const LiveFigures& live, std::int64_t frame_count);
-
-/// "searching", "tracking", "lost".
-[[nodiscard]] const char* state_word(TrackState state);
 
 }  // namespace pliant

@@ -20,8 +20,10 @@ Error TrajectoryWriter::failure() const {
 }
 
 Outcome TrajectoryWriter::write(std::int64_t utime, const RigidTransform& pose) {
-  const Quaternion q = quaternion_from_rotation(pose.rotation);
-  const Vector3& t = pose.translation;
+  return write(utime, pose.translation, quaternion_from_rotation(pose.rotation));
+}
+
+Outcome TrajectoryWriter::write(std::int64_t utime, const Vector3& t, const Quaternion& q) {
   // A stamp before 1970 keeps its sign and its digits.
   const std::int64_t magnitude = utime < 0 ? -utime : utime;
   const int written =

@@ -18,6 +18,7 @@ class TrajectoryWriter {
   [[nodiscard]] static Result<TrajectoryWriter> create(const std::string& path);
 
   [[nodiscard]] Outcome write(std::int64_t utime, const RigidTransform& pose);
+  [[nodiscard]] Outcome write(std::int64_t utime, const Vector3& t, const Quaternion& q);
   /// What the disk could not take shows here at the latest.
   [[nodiscard]] Outcome finish();
 

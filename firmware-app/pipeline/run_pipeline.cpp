@@ -104,6 +104,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
     publisher = std::move(*made);
     warn(settings, publisher->warning());
   }
+  if (publisher != nullptr) publisher->announce(model);
 
   LiveFigures live;
   Capture capture(

@@ -41,6 +41,7 @@ bool decodes(MessageKind kind, std::span<const std::uint8_t> body) {
   DeformedMessage deformed;
   StatusMessage status;
   DepthMessage depth;
+  ModelMessage model;
   switch (kind) {
     case MessageKind::pose:
       return decode(body, pose);
@@ -52,11 +53,13 @@ bool decodes(MessageKind kind, std::span<const std::uint8_t> body) {
       return decode(body, status);
     case MessageKind::depth:
       return decode(body, depth);
+    case MessageKind::model:
+      return decode(body, model);
   }
   return false;
 }
 
-constexpr int kSampled = 4;  // kinds in Samples; depth has its own tests
+constexpr int kSampled = 4;  // kinds in Samples; depth and model have their own tests
 
 TEST(LcmDecoding, BringsBackWhatWasEncoded) {
   const Samples samples;

@@ -6,6 +6,7 @@
 #include "bot_core/rigid_transform_t.hpp"
 #include "pliant/deformed_t.hpp"
 #include "pliant/depth_t.hpp"
+#include "pliant/model_t.hpp"
 #include "pliant/region_t.hpp"
 #include "pliant/regions_t.hpp"
 #include "pliant/status_t.hpp"
@@ -20,6 +21,7 @@ TEST(LcmFingerprint, IsTheGeneratedOne) {
   EXPECT_EQ(wire::kDeformedFingerprint, static_cast<std::uint64_t>(deformed_t::getHash()));
   EXPECT_EQ(wire::kDepthFingerprint, static_cast<std::uint64_t>(depth_t::getHash()));
   EXPECT_EQ(wire::kStatusFingerprint, static_cast<std::uint64_t>(status_t::getHash()));
+  EXPECT_EQ(wire::kModelFingerprint, static_cast<std::uint64_t>(model_t::getHash()));
 }
 
 TEST(LcmFingerprint, PoseIsThatOfTheOriginalBotCoreType) {

@@ -3,6 +3,7 @@
 #include <lcm/lcm.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +14,8 @@
 #include <thread>
 #include <vector>
 
+#include "drivers/lcm/frame_assembler.hpp"
+#include "drivers/lcm/multicast_probe.hpp"
 #include "drivers/lcm/publisher.hpp"
 #include "drivers/lcm/subscriber.hpp"
 #include "tests/lcm/heap_counter.hpp"
@@ -155,6 +158,75 @@ TEST_F(LcmNetwork, ANetworkThatGoesAwayIsCountedAndComesBack) {
   (*publisher)->publish(messages.encode(sample.result), 2);
   EXPECT_TRUE(handle_until(**subscriber, [&] { return (*subscriber)->counters().total() == 3; }));
   EXPECT_EQ((*publisher)->counters().failures, 3);
+}
+
+TEST_F(LcmNetwork, WhatCannotReachOtherHostsIsSaidWithTheMend) {
+  LcmSettings far = kSettings;
+  far.url = "udpm://239.255.76.67:7667?ttl=1";
+  const auto publisher = LcmPublisher::create(far, 100);
+  ASSERT_TRUE(publisher);
+  const std::string& warning = (*publisher)->warning();
+  EXPECT_NE(warning.find("sudo ip route replace 224.0.0.0/4 dev "), std::string::npos) << warning;
+  EXPECT_EQ(warning.find('\n'), std::string::npos);
+  // Without any route the other advice stands.
+  ASSERT_TRUE(set_multicast_route(false));
+  const auto parsed = LcmUrl::parse(far.url);
+  EXPECT_EQ(multicast_reach_advice(*parsed), "");
+  ASSERT_TRUE(set_multicast_route(true));
+}
+
+TEST_F(LcmNetwork, ReceiveBuffersTooSmallAreSaidWithTheMend) {
+  LcmSettings pictures = kSettings;
+  pictures.depth_width = 1280;
+  pictures.depth_height = 1024;
+  const auto publisher = LcmPublisher::create(pictures, 100);
+  ASSERT_TRUE(publisher);
+  int room = 0;
+  socklen_t size = sizeof(room);
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  ASSERT_EQ(::getsockopt(socket, SOL_SOCKET, SO_RCVBUF, &room, &size), 0);
+  ::close(socket);
+  const std::string& warning = (*publisher)->warning();
+  if (room < 2 * 1280 * 1024) {
+    EXPECT_NE(warning.find("sudo sysctl -w net.core.rmem_max=8388608 net.core.rmem_default=8388608"),
+              std::string::npos)
+        << warning;
+  } else {
+    EXPECT_EQ(warning, "");
+  }
+  const auto url = LcmUrl::parse(kSettings.url);
+  EXPECT_EQ(receive_buffer_advice(*url, 1000), "") << "room enough";
+  EXPECT_NE(receive_buffer_advice(*url, std::size_t{1} << 30), "");
+}
+
+TEST_F(LcmNetwork, PicturesArriveWholeInTheReceiveBufferThatSystemsHave) {
+  LcmSettings settings = kSettings;
+  settings.depth_width = 640;
+  settings.depth_height = 480;
+  const auto publisher = LcmPublisher::create(settings, 100);
+  ASSERT_TRUE(publisher);
+  PictureAssembler assembler;
+  int pictures = 0;
+  LcmSubscriber::Handlers handlers;
+  handlers.depth = [&](const DepthMessage& message) { pictures += assembler.take(message) ? 1 : 0; };
+  auto subscriber = LcmSubscriber::create(settings.url, "PLIANT", handlers);
+  ASSERT_TRUE(subscriber) << subscriber.error().message;
+  const std::vector<std::uint16_t> pixels(640 * 480, 900);
+  DepthFrame frame;
+  frame.depth = pixels.data();
+  frame.width = frame.stride = 640;
+  frame.height = 480;
+  const Intrinsics camera = {
+      .width = 640, .height = 480, .fx = 500, .fy = 500, .cx = 320, .cy = 240, .depth_scale = 1000};
+  constexpr int kSent = 30;
+  for (int i = 0; i < kSent; ++i) {
+    frame.number = frame.utime = i;
+    (*publisher)->publish_depth(frame, camera);
+    const auto end = std::chrono::steady_clock::now() + milliseconds(33);
+    while (std::chrono::steady_clock::now() < end) (*subscriber)->handle(2);
+  }
+  // A busy machine may lose some all the same.
+  EXPECT_TRUE(handle_until(**subscriber, [&] { return pictures >= kSent / 2; })) << pictures;
 }
 
 TEST_F(LcmNetwork, LcmLoggerRecordsWhatOurSubscriberReads) {

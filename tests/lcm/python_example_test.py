@@ -57,7 +57,8 @@ def sample_status():
 class PythonExample(unittest.TestCase):
     def test_fingerprints_are_the_generated_ones(self):
         for name, package in (("rigid_transform_t", bot_core), ("region_t", pliant), ("regions_t", pliant),
-                              ("deformed_t", pliant), ("status_t", pliant), ("depth_t", pliant)):
+                              ("deformed_t", pliant), ("status_t", pliant), ("depth_t", pliant),
+                              ("model_t", pliant)):
             expected = getattr(package, name)._get_packed_fingerprint()
             self.assertEqual(TYPES.fingerprint(TYPES.by_name[name]), int.from_bytes(expected, "big"), name)
 

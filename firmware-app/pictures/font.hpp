@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace pliant::demo {
+namespace pliant {
 
 /// Rows from the top; the lowest five bits are the pixels, the left one highest.
 using Glyph = std::array<std::uint8_t, 7>;
@@ -14,4 +14,4 @@ inline constexpr int kGlyphHeight = 7;
 /// Printable ASCII; a space for anything else, a frame for what is not drawn.
 [[nodiscard]] const Glyph& glyph(char character);
 
-}  // namespace pliant::demo
+}  // namespace pliant

@@ -1,11 +1,11 @@
-#include "firmware-app/demo/canvas.hpp"
+#include "firmware-app/pictures/canvas.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "firmware-app/demo/font.hpp"
+#include "firmware-app/pictures/font.hpp"
 
-namespace pliant::demo {
+namespace pliant {
 
 void Canvas::set(int u, int v, RegionColour colour, double opacity) {
   if (u < 0 || v < 0 || u >= width_ || v >= height_) return;
@@ -54,4 +54,4 @@ int Canvas::text_width(std::string_view words, int scale) {
   return static_cast<int>(words.size()) * (kGlyphWidth + 1) * scale;
 }
 
-}  // namespace pliant::demo
+}  // namespace pliant

@@ -7,7 +7,7 @@
 
 #include "drivers/geometry_files/region_colours.hpp"
 
-namespace pliant::demo {
+namespace pliant {
 
 /// Drawing outside the picture does nothing.
 class Canvas {
@@ -36,4 +36,4 @@ class Canvas {
   std::vector<std::uint8_t> pixels_;
 };
 
-}  // namespace pliant::demo
+}  // namespace pliant

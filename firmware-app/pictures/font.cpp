@@ -1,6 +1,6 @@
-#include "firmware-app/demo/font.hpp"
+#include "firmware-app/pictures/font.hpp"
 
-namespace pliant::demo {
+namespace pliant {
 
 namespace {
 
@@ -111,4 +111,4 @@ const Glyph& glyph(char character) {
   return place < kGlyphs.size() ? kGlyphs[place] : kGlyphs[0];
 }
 
-}  // namespace pliant::demo
+}  // namespace pliant
