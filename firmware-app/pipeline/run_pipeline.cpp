@@ -12,6 +12,7 @@
 #include "firmware-app/measure/clock.hpp"
 #include "firmware-app/pipeline/memory_block.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
+#include "firmware-app/pipeline/touch_program.hpp"
 
 namespace pliant {
 
@@ -167,6 +168,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
       warning);
   if (!started) return started.error();
   warn(settings, warning);
+  static_cast<void>(touch_program());
   if (settings.lock_memory) warn(settings, lock_memory());
   // Above tracking: taking a frame from the device is short, and coming late to it loses frames.
   warning.clear();
