@@ -1,5 +1,5 @@
 #!/bin/bash
-# toolchains/cross.sh arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick] [-- CTEST OPTION...]
+# toolchains/cross.sh arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick|--count] [-- CTEST OPTION...]
 #
 # Cross-compiles Pliant into build/PRESET (rpi-arm64, rpi-armhf, jetson), runs the tests of the core and of what
 # brings the outside in and out under qemu-user, and compares the results of whole runs, byte for byte, with those
@@ -8,6 +8,7 @@
 #                   build/sysroot/ARCH
 #   --build-only    no test
 #   --quick         only the core, its tests and the comparison: what continuous integration has time for
+#   --count         only the instructions of a frame (64 bit), against tests/cross/instruction_limits.txt
 # Needs the Debian packages g++-aarch64-linux-gnu or g++-arm-linux-gnueabihf, and qemu-user (./dev cross installs
 # them). Further CMake options go into CROSS_OPTIONS.
 set -euo pipefail
@@ -15,7 +16,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 say() { printf '\n== %s\n' "$*"; }
 die() { printf 'cross: %s\n' "$*" >&2; exit 2; }
-usage="usage: ./dev cross arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick] [-- CTEST OPTION...]"
+usage="usage: ./dev cross arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick|--count] [-- CTEST OPTION...]"
 [ $# -ge 1 ] || die "$usage"
 case $1 in
   arm64) arch=arm64 preset=rpi-arm64 ;;
@@ -38,6 +39,10 @@ while [ $# -gt 0 ]; do
       ;;
     --build-only) part=build ;;
     --quick) part=quick ;;
+    --count)
+      [ "$arch" = arm64 ] || die "instructions are counted on 64-bit ARM"
+      part=count
+      ;;
     --) shift && break ;;
     *) die "unknown option '$1'; $usage" ;;
   esac
@@ -53,10 +58,10 @@ fi
 folder=build/$preset
 folders="core;cross;geometry_files;images;lcm;model_files;recording;simulated"
 targets=()
-if [ $part = quick ]; then
-  folders="core;cross"
-  targets=(core_tests replay_frames)
-fi
+case $part in
+  quick) folders="core;cross" targets=(core_tests replay_frames) ;;
+  count) folders="core;cross" targets=(replay_frames) ;;
+esac
 read -r -a options <<<"${CROSS_OPTIONS:-}"
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 mkdir -p build
@@ -66,6 +71,19 @@ cmake --preset "$preset" "-DPLIANT_SYSROOT=$sysroot" "-DPLIANT_BUILD_TESTS=$([ $
 say "building $preset"
 cmake --build "$folder" -j "$(nproc)" ${targets[@]+--target "${targets[@]}"}
 [ $part != build ] || exit 0
+if [ $part = count ]; then
+  say "counting instructions, 30 frames"
+  sources=(simulated:cushion simulated:figure simulated:box)
+  toy=${PLIANT_SHARED_DATA:-../shared/data}/real_plush_squirrel
+  if [ -d "$toy" ]; then
+    mkdir -p build/bench
+    cmake --build build/release -j "$(nproc)" --target pliant >/dev/null
+    build/release/firmware-app/pliant model build "$toy/model.ply" -o build/bench/real_plush_squirrel.model >/dev/null
+    sources+=("$toy=build/bench/real_plush_squirrel.model")
+  fi
+  LIMITS=tests/cross/instruction_limits.txt tests/cross/instructions.sh "$folder" 30 "${sources[@]}"
+  exit
+fi
 
 say "testing under $emulator"
 ctest --test-dir "$folder" -j "$(nproc)" --output-on-failure "$@"
