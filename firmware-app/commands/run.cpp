@@ -190,6 +190,12 @@ int run(const RunOptions& options) {
       before.reset();
       continue;
     }
+    if (end->left && end->source_hangs) {
+      // It cannot be used again, nor closed; a service manager starts the program anew.
+      static_cast<void>(report({ErrorKind::device, "the device does not answer: it cannot be taken over"}));
+      std::fflush(nullptr);
+      std::_Exit(kExitFailed);
+    }
     if (end->left && next) {
       const bool same_object = next->model == inputs.model && next->source == inputs.source;
       pose.reset();

@@ -40,8 +40,8 @@ class SendWatch {
   std::optional<PathWatch> watch_;
 };
 
-/// How long a stopped source may take to come back.
-constexpr int kHangMs = 500;
+/// How long a source may take to come back: when the program ends, and when it goes on with the same source.
+constexpr int kHangMs = 500, kHangBeforeReuseMs = 5000;
 
 /// What the capturing thread uses, in one place that can outlive the run.
 struct CaptureSide {
@@ -187,7 +187,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   tracking_thread.join();
   capture.stop();
   ring.abort();
-  if (!capture_side->thread.join_within(kHangMs)) {
+  if (!capture_side->thread.join_within(end.left ? kHangBeforeReuseMs : kHangMs)) {
     // The thread still uses what is here: it stays until the process ends.
     end.source_hangs = true;
     static_cast<void>(capture_side.release());
