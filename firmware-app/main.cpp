@@ -38,6 +38,7 @@ int run_program(int count, char** words) {
   add_register(program, work);
   add_run(program, work);
   add_record(program, work);
+  add_devices(program, work);
   add_check(program, work);
   try {
     program.parse(count, words);

@@ -10,6 +10,7 @@ namespace pliant {
 /// What kind of failure; decides the program's exit code.
 enum class ErrorKind {
   bad_input,  ///< something the user named is missing, unreadable, malformed or out of range (exit 2)
+  absent,     ///< the device is not there, but may come (exit 3)
   device,     ///< a device failed or was lost for good (exit 3)
   write       ///< an output could not be written (exit 3)
 };

@@ -8,6 +8,7 @@
 #include "core/camera/intrinsics.hpp"
 #include "core/camera/sensor.hpp"
 #include "drivers/common/result.hpp"
+#include "drivers/depth_source/device_monitor.hpp"
 
 namespace pliant {
 
@@ -23,7 +24,7 @@ enum class SourceEvent {
 struct SourceItem {
   SourceEvent event = SourceEvent::timeout;
   DepthFrame frame;   ///< borrowed until the next call of next() or close()
-  std::string fault;  ///< one line; empty for frame, timeout and end
+  std::string fault;  ///< one line; empty for frame and end, for timeout where nothing new is to be said
 };
 
 /// Opened by its maker; closed by close() or the destructor. One thread uses it.
@@ -40,6 +41,10 @@ class DepthSource {
   [[nodiscard]] virtual bool live() const = 0;
   /// Frames in all, -1 where unknown.
   [[nodiscard]] virtual std::int64_t frame_count() const { return -1; }
+  /// Frames a second that the mode promises.
+  [[nodiscard]] virtual double rate() const { return 30; }
+  /// How the device fares, where the source watches it; else null.
+  [[nodiscard]] virtual const DeviceMonitor* monitor() const { return nullptr; }
   /// The next frame, waiting at most `timeout_ms`. Reuses `item`'s storage; no heap call for a frame that is
   /// well.
   virtual void next(int timeout_ms, SourceItem& item) = 0;

@@ -152,8 +152,11 @@ bool decode(std::span<const std::uint8_t> body, StatusMessage& message) {
   message.frame = in.get<std::int64_t>();
   if (!read_state(in, message.state)) return false;
   const auto device = in.get<std::int8_t>();
-  if (device < 0 || device > static_cast<std::int8_t>(DeviceState::lost)) return false;
+  if (device < 0 || device > static_cast<std::int8_t>(DeviceState::ended)) return false;
   message.device = static_cast<DeviceState>(device);
+  const auto fault = in.get<std::int8_t>();
+  if (fault < 0 || fault >= kStreamFaults) return false;
+  message.stream_fault = static_cast<StreamFault>(fault);
   message.rate = in.get<float>();
   if (!std::isfinite(message.rate) || message.rate < 0) return false;
   message.latency_median = in.get<std::int32_t>();
@@ -165,10 +168,13 @@ bool decode(std::span<const std::uint8_t> body, StatusMessage& message) {
   for (StageMessage& stage : message.stages) stage.median = in.get<std::int32_t>();
   for (StageMessage& stage : message.stages) stage.p99 = in.get<std::int32_t>();
   for (StageMessage& stage : message.stages) stage.max = in.get<std::int32_t>();
-  for (std::int64_t* counter :
-       {&message.tracked, &message.searching, &message.lost, &message.dropped, &message.bad_frames,
-        &message.deadline_misses, &message.unsent, &message.send_failures, &message.workspace_bytes,
-        &message.rss_bytes, &message.heap_calls, &message.page_faults}) {
+  for (std::int64_t* counter : {&message.tracked,        &message.searching,     &message.lost,
+                                &message.dropped,        &message.bad_frames,    &message.zero_frames,
+                                &message.stuck_frames,   &message.noise_frames,  &message.wrong_size_frames,
+                                &message.delayed_frames, &message.slow_frames,   &message.broken_frames,
+                                &message.stalls,         &message.reopenings,    &message.deadline_misses,
+                                &message.unsent,         &message.send_failures, &message.workspace_bytes,
+                                &message.rss_bytes,      &message.heap_calls,    &message.page_faults}) {
     *counter = in.get<std::int64_t>();
   }
   message.last_error = in.get_string();

@@ -12,6 +12,7 @@
 #include "core/camera/intrinsics.hpp"
 #include "core/geometry/rigid_transform.hpp"
 #include "core/track_result.hpp"
+#include "drivers/depth_source/device_state.hpp"
 
 namespace pliant {
 
@@ -59,9 +60,6 @@ struct DeformedMessage {
   std::vector<Point3f> position, displacement;
 };
 
-/// State of the depth device, as in status_t.
-enum class DeviceState : std::uint8_t { closed, opening, streaming, silent, reconnecting, ended, lost };
-
 struct StageMessage {
   std::string name;
   std::int32_t median = 0, p99 = 0, max = 0;  ///< µs
@@ -72,11 +70,14 @@ struct StatusMessage {
   std::string version, source;
   std::int64_t model_id = 0, frame = -1;
   TrackState state = TrackState::searching;
-  DeviceState device = DeviceState::closed;
+  DeviceState device = DeviceState::absent;
+  StreamFault stream_fault = StreamFault::none;
   float rate = 0;
   std::int32_t latency_median = 0, latency_p99 = 0, latency_max = 0;
   std::vector<StageMessage> stages;
   std::int64_t tracked = 0, searching = 0, lost = 0, dropped = 0, bad_frames = 0, deadline_misses = 0;
+  std::int64_t zero_frames = 0, stuck_frames = 0, noise_frames = 0, wrong_size_frames = 0, delayed_frames = 0,
+               slow_frames = 0, broken_frames = 0, stalls = 0, reopenings = 0;
   std::int64_t unsent = 0, send_failures = 0;
   std::int64_t workspace_bytes = 0, rss_bytes = 0, heap_calls = 0, page_faults = 0;
   std::string last_error;

@@ -18,6 +18,7 @@ std::span<const std::uint8_t> encode_status(const StatusContent& content,
   out.put<std::int64_t>(content.frame);
   out.put<std::int8_t>(static_cast<std::int8_t>(content.state));
   out.put<std::int8_t>(static_cast<std::int8_t>(content.device));
+  out.put<std::int8_t>(static_cast<std::int8_t>(content.stream_fault));
   out.put<float>(content.rate);
   out.put<std::int32_t>(content.latency_median_us);
   out.put<std::int32_t>(content.latency_p99_us);
@@ -28,10 +29,13 @@ std::span<const std::uint8_t> encode_status(const StatusContent& content,
   for (const StageTimes& stage : stages) out.put<std::int32_t>(stage.median_us);
   for (const StageTimes& stage : stages) out.put<std::int32_t>(stage.p99_us);
   for (const StageTimes& stage : stages) out.put<std::int32_t>(stage.max_us);
-  for (const std::int64_t counter :
-       {content.tracked, content.searching, content.lost, content.dropped, content.bad_frames,
-        content.deadline_misses, content.unsent, content.send_failures, content.workspace_bytes,
-        content.rss_bytes, content.heap_calls, content.page_faults}) {
+  for (const std::int64_t counter : {content.tracked,        content.searching,     content.lost,
+                                     content.dropped,        content.bad_frames,    content.zero_frames,
+                                     content.stuck_frames,   content.noise_frames,  content.wrong_size_frames,
+                                     content.delayed_frames, content.slow_frames,   content.broken_frames,
+                                     content.stalls,         content.reopenings,    content.deadline_misses,
+                                     content.unsent,         content.send_failures, content.workspace_bytes,
+                                     content.rss_bytes,      content.heap_calls,    content.page_faults}) {
     out.put<std::int64_t>(counter);
   }
   out.put_string(content.last_error, kMaxStatusText);

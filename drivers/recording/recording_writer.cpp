@@ -1,6 +1,8 @@
 #include "drivers/recording/recording_writer.hpp"
 
 #include <fmt/core.h>
+#include <stdio_ext.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -52,11 +54,15 @@ Outcome RecordingWriter::write(const DepthFrame& frame) {
   const std::string name = fmt::format("depth/{:06}.png", frames_);
   if (Outcome stored =
           write_png_grey16(folder_ / name, {frame.depth, frame.width, frame.height, frame.stride}, png_);
-      !stored)
+      !stored) {
+    remove_picture(name);
     return stored;
+  }
   if (Outcome listed = append(depth_list_, "depth.txt", fmt::format("{} {}\n", seconds(frame.utime), name));
-      !listed)
+      !listed) {
+    remove_picture(name);
     return listed;
+  }
   ++frames_;
   return success();
 }
@@ -91,9 +97,19 @@ Outcome RecordingWriter::open_list(const char* name, const std::string& heading,
 
 Outcome RecordingWriter::append(File& list, const char* name, const std::string& line) const {
   if (!list) return failed(folder_ / name, "the recording is finished");
-  if (std::fputs(line.c_str(), list.get()) < 0 || std::fflush(list.get()) != 0)
-    return failed(folder_ / name, std::strerror(errno));
-  return success();
+  const off_t before = ftello(list.get());
+  if (std::fputs(line.c_str(), list.get()) >= 0 && std::fflush(list.get()) == 0) return success();
+  const int error = errno;
+  // Half a line would spoil the list: what stands there stays, what could not be written goes.
+  __fpurge(list.get());
+  if (before < 0 || ftruncate(fileno(list.get()), before) != 0 || fseeko(list.get(), before, SEEK_SET) != 0)
+    return failed(folder_ / name, fmt::format("{}; its last line may be cut", std::strerror(error)));
+  return failed(folder_ / name, std::strerror(error));
+}
+
+void RecordingWriter::remove_picture(const std::string& name) const {
+  std::error_code ignored;
+  std::filesystem::remove(folder_ / name, ignored);
 }
 
 }  // namespace pliant

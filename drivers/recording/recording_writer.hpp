@@ -45,6 +45,7 @@ class RecordingWriter {
   RecordingWriter(std::filesystem::path folder, const CameraFile& camera)
       : folder_(std::move(folder)), camera_(camera) {}
   [[nodiscard]] Outcome open_list(const char* name, const std::string& heading, File& list) const;
+  void remove_picture(const std::string& name) const;
   [[nodiscard]] Outcome append(File& list, const char* name, const std::string& line) const;
 
   std::filesystem::path folder_;

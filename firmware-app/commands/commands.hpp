@@ -17,6 +17,7 @@ void add_model_export(CLI::App& model, Work& work);
 void add_run(CLI::App& program, Work& work);
 void add_register(CLI::App& program, Work& work);
 void add_record(CLI::App& program, Work& work);
+void add_devices(CLI::App& program, Work& work);
 void add_check(CLI::App& program, Work& work);
 
 }  // namespace pliant

@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::string_view kRecording = "recording:";
 constexpr std::string_view kSimulated = "simulated:";
-constexpr std::string_view kKnown =
-    "recording:DIR and simulated:cushion|figure|box[?seed=1&noise=structure&frames=300]";
+constexpr std::string_view kKnown = "simulated:cushion|figure|box[?seed=1&noise=structure&frames=300]";
 
 /// Whether `uri` begins with a scheme: letters and digits before a colon.
 bool has_scheme(std::string_view uri) {
@@ -26,7 +25,7 @@ bool has_scheme(std::string_view uri) {
 
 }  // namespace
 
-Result<OpenSource> open_source(const std::string& uri) {
+Result<OpenSource> open_source(const std::string& uri, const SourceOptions& options) {
   OpenSource open;
   if (uri.starts_with(kRecording)) {
     Result<std::unique_ptr<DepthSource>> source = open_recording(uri.substr(kRecording.size()));
@@ -41,10 +40,17 @@ Result<OpenSource> open_source(const std::string& uri) {
     open.source = std::move(*source);
     return open;
   }
+  Result<std::unique_ptr<DepthSource>> live = open_live_input(uri, options);
+  if (!live) return live.error();
+  if (*live != nullptr) {
+    open.source = std::move(*live);
+    return open;
+  }
   std::error_code ignored;
   if (!has_scheme(uri) && std::filesystem::is_directory(uri, ignored))
     return Error{ErrorKind::bad_input, fmt::format("source '{0}' has no scheme; write recording:{0}", uri)};
-  return Error{ErrorKind::bad_input, fmt::format("unknown source '{}'; there are {}", uri, kKnown)};
+  return Error{ErrorKind::bad_input, fmt::format("unknown source '{}'; there are recording:DIR, {} and {}",
+                                                 uri, kLiveSources, kKnown)};
 }
 
 bool brings_own_model(std::string_view source_uri) {

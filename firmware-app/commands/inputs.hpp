@@ -10,12 +10,14 @@
 #include "drivers/model_files/model_builder.hpp"
 #include "drivers/model_files/model_file.hpp"
 #include "drivers/simulated/simulated.hpp"
+#include "firmware-app/commands/live_inputs.hpp"
 
 namespace pliant {
 
 inline constexpr const char* kSourceHelp =
-    "Where frames come from: recording:DIR, or simulated:cushion|figure|box, with "
-    "?seed=1&noise=structure&frames=300 behind it if wanted";
+    "Where frames come from: recording:DIR, a device (openni2:[URI], v4l2:/dev/videoN), oni:FILE.oni, "
+    "lcmlog:FILE, or "
+    "simulated:cushion|figure|box, with ?seed=1&noise=structure&frames=300 behind it if wanted";
 inline constexpr std::string_view kSourceExample = "simulated:cushion";
 
 struct OpenSource {
@@ -23,8 +25,9 @@ struct OpenSource {
   const SimulatedSource* simulated = nullptr;  ///< the same, where it is a simulated one: knows the truth
 };
 
-/// "recording:DIR" or "simulated:...". ErrorKind::bad_input names what is wrong and what there is.
-[[nodiscard]] Result<OpenSource> open_source(const std::string& uri);
+/// "recording:DIR", "simulated:..." or a live input. ErrorKind::bad_input names what is wrong and what there
+/// is.
+[[nodiscard]] Result<OpenSource> open_source(const std::string& uri, const SourceOptions& options = {});
 
 /// A simulated source needs no model file.
 [[nodiscard]] bool brings_own_model(std::string_view source_uri);

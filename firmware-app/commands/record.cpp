@@ -8,6 +8,7 @@
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/pipeline/recording_thread.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
 
 namespace pliant {
@@ -15,7 +16,7 @@ namespace pliant {
 namespace {
 
 struct RecordOptions {
-  std::string source, output;
+  std::string source, output, sensor;
   std::int64_t frames = -1;
 };
 
@@ -27,6 +28,8 @@ class Recorder {
         RecordingWriter::create(folder, {source.source->intrinsics(), source.source->sensor()});
     if (!writer) return writer.error();
     writer_ = std::move(*writer);
+    if (source.source->live())
+      thread_ = std::make_unique<RecordingThread>(*writer_, source.source->intrinsics());
     simulated_ = source.simulated;
     if (simulated_ == nullptr) return success();
     Result<std::unique_ptr<TruthWriter>> truth = TruthWriter::create(folder, simulated_->mesh());
@@ -34,7 +37,12 @@ class Recorder {
     truth_ = std::move(*truth);
     return success();
   }
+  /// A live source's frames wait for the disk in a queue, any other's are written at once.
   [[nodiscard]] Outcome write(const DepthFrame& frame) {
+    if (thread_ != nullptr) {
+      thread_->push(frame);
+      return thread_->state();
+    }
     const std::int64_t position = writer_->frames();
     if (Outcome written = writer_->write(frame); !written) return written;
     if (simulated_ == nullptr) return success();
@@ -44,21 +52,33 @@ class Recorder {
     return truth_->write(position, truth);
   }
   [[nodiscard]] Outcome finish() {
+    if (thread_ != nullptr)
+      if (Outcome done = thread_->finish(); !done) return done;
     if (truth_)
       if (Outcome done = truth_->finish(); !done) return done;
     return writer_->finish();
   }
-  [[nodiscard]] std::int64_t frames() const { return writer_->frames(); }
+  [[nodiscard]] std::int64_t frames() const {
+    return thread_ != nullptr ? thread_->written() : writer_->frames();
+  }
+  [[nodiscard]] std::int64_t dropped() const { return thread_ != nullptr ? thread_->dropped() : 0; }
 
  private:
   std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<RecordingThread> thread_;
   std::unique_ptr<TruthWriter> truth_;
   const SimulatedSource* simulated_ = nullptr;
 };
 
 int record(const RecordOptions& options) {
   const StopSignal stop;
-  Result<OpenSource> source = open_source(options.source);
+  SourceOptions source_options;
+  if (!options.sensor.empty()) {
+    const Result<SensorFile> sensor = read_sensor(options.sensor);
+    if (!sensor) return report(sensor.error());
+    source_options.sensor = *sensor;
+  }
+  Result<OpenSource> source = open_source(options.source, source_options);
   if (!source) return report(source.error());
   Recorder recorder;
   if (const Outcome opened = recorder.open(options.output, *source); !opened) return report(opened.error());
@@ -67,6 +87,7 @@ int record(const RecordOptions& options) {
   SourceItem item;
   std::int64_t taken = 0, bad_frames = 0;
   std::string fault;
+  Outcome failure = success();
   while (!StopSignal::requested() && (options.frames < 0 || taken < options.frames)) {
     source->source->next(100, item);
     if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
@@ -77,16 +98,21 @@ int record(const RecordOptions& options) {
       fault = item.fault;
       continue;
     }
-    if (const Outcome written = recorder.write(item.frame); !written) {
-      line.clear();
-      return report(written.error());
-    }
+    failure = recorder.write(item.frame);
+    if (!failure) break;
     line.show(fmt::format("recorded {} frames", recorder.frames()));
   }
   line.clear();
-  if (const Outcome finished = recorder.finish(); !finished) return report(finished.error());
+  if (Outcome finished = recorder.finish(); failure && !finished) failure = finished;
   std::string summary = fmt::format("recorded {} frames to {}", recorder.frames(), options.output);
   if (bad_frames > 0) summary += fmt::format(", left out {} bad ones", bad_frames);
+  if (recorder.dropped() > 0)
+    summary += fmt::format(", dropped {} that the disk had no time for", recorder.dropped());
+  if (!failure) {
+    // What stands in the folder is a whole recording of so many frames.
+    static_cast<void>(print(summary + "\n"));
+    return report(failure.error());
+  }
   if (!print(summary + "\n")) return kExitFailed;
   if (item.event == SourceEvent::lost) return report({ErrorKind::device, item.fault});
   if (recorder.frames() == 0 && !StopSignal::requested())
@@ -104,6 +130,9 @@ void add_record(CLI::App& program, Work& work) {
   app->add_option("-o,--output", options->output, "Folder of the new recording")
       ->required()
       ->type_name("DIR");
+  app->add_option("--sensor", options->sensor,
+                  "Sensor description (TOML): mode, camera and noise of a device")
+      ->type_name("FILE");
   app->add_option("--frames", options->frames, "Take this many frames from the source")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))
       ->type_name("N");

@@ -224,6 +224,10 @@ void add_run(CLI::App& program, Work& work) {
   app->add_option("--model", options->model, "Model file; a simulated source brings its own")
       ->type_name("FILE");
   app->add_option("--source", options->source, kSourceHelp)->type_name("URI");
+  app->add_option("--sensor", options->sensor,
+                  "Sensor description (TOML): mode, camera and noise of a device")
+      ->type_name("FILE");
+  app->add_flag("--publish-depth", options->publish_depth, "Publish the depth frames too");
   app->add_option("--trajectory", options->trajectory, "Write the base region's path, TUM format")
       ->type_name("FILE");
   app->add_option("--points", options->points, "Write where every point is, a PLY file per tracked frame")

@@ -17,6 +17,8 @@ Result<Config> merged_config(const RunOptions& options) {
   if (options.model) config.model = *options.model;
   if (options.source) config.source = *options.source;
   if (options.lcm_url) config.lcm.url = *options.lcm_url;
+  if (options.sensor) config.sensor.description = *options.sensor;
+  if (options.publish_depth) config.lcm.publish_depth = true;
   if (options.threads) config.run.threads = *options.threads;
   if (config.source.empty())
     return Error{ErrorKind::bad_input,
@@ -54,10 +56,20 @@ RunSettings settings_of(const RunOptions& options, const Config& config, const D
 Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& config, const RunInputs* before) {
   RunInputs inputs;
   inputs.config = config;
-  if (before != nullptr && before->config.source == config.source) {
+  SourceOptions source_options;
+  source_options.patience = config.sensor.patience_s;
+  if (!config.sensor.description.empty()) {
+    const Result<SensorFile> sensor = read_sensor(config.sensor.description);
+    if (!sensor) return sensor.error();
+    source_options.sensor = *sensor;
+  }
+  const bool same_source = before != nullptr && before->config.source == config.source &&
+                           before->config.sensor.description == config.sensor.description &&
+                           before->config.sensor.patience_s == config.sensor.patience_s;
+  if (same_source) {
     inputs.source = before->source;
   } else {
-    Result<OpenSource> source = open_source(config.source);
+    Result<OpenSource> source = open_source(config.source, source_options);
     if (!source) return source.error();
     inputs.source = std::make_shared<OpenSource>(std::move(*source));
   }
@@ -70,11 +82,7 @@ Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& confi
       before != nullptr && before->model->view().header().checksum == model->view().header().checksum;
   inputs.model = same_model ? before->model : std::make_shared<ModelFile>(std::move(*model));
   inputs.settings = settings_of(options, config, *inputs.source->source);
-  if (!config.sensor.description.empty()) {
-    const Result<SensorFile> sensor = read_sensor(config.sensor.description);
-    if (!sensor) return sensor.error();
-    inputs.settings.sensor = sensor->noise;
-  }
+  if (source_options.sensor) inputs.settings.sensor = source_options.sensor->noise;
   if (config.lcm.url != "none")
     if (const Result<LcmUrl> url = LcmUrl::parse(config.lcm.url); !url) return url.error();
   if (const Outcome prefix = check_channel_prefix(config.lcm.prefix); !prefix) return prefix.error();

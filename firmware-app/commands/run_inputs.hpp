@@ -15,7 +15,8 @@ namespace pliant {
 /// The command line of `pliant run`.
 struct RunOptions {
   std::string config;
-  std::optional<std::string> model, source, lcm_url;
+  std::optional<std::string> model, source, lcm_url, sensor;
+  bool publish_depth = false;
   std::string trajectory, points, stats;
   std::int64_t frames = -1;
   std::optional<std::string> pace;

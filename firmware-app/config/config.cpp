@@ -25,6 +25,8 @@ std::vector<Setting> config_settings(Config& c) {
        "rigid parts followed at once"},
       {"track", "material", &c.track.material, 0, 1, "", "how easily the object stretches, 0 stiff, 1 soft"},
       {"sensor", "description", &c.sensor.description, 0, 4096, "", "file that describes the sensor"},
+      {"sensor", "patience_s", &c.sensor.patience_s, 0, 1e7, "s",
+       "how long a device may be gone before the run gives up"},
       {"run", "threads", &c.run.threads, 1, 64, "", "threads that share the work of one frame"},
       {"run", "priority", &c.run.priority, 0, 99, "", "real-time priority of tracking, 0 for none"},
       {"run", "affinity", &c.run.affinity, 0, 1023, "", "processors that tracking may use, [] for all"},
@@ -57,12 +59,12 @@ Result<Config> read_config(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   make_relative_to(folder, config.model);
   make_relative_to(folder, config.sensor.description);
-  constexpr std::string_view kRecording = "recording:";
-  if (config.source.starts_with(kRecording)) {
-    std::string directory = config.source.substr(kRecording.size());
-    make_relative_to(folder, directory);
-    config.source = std::string(kRecording) + directory;
-  }
+  for (const std::string_view scheme : {"recording:", "oni:", "lcmlog:"})
+    if (config.source.starts_with(scheme)) {
+      std::string file = config.source.substr(scheme.size());
+      make_relative_to(folder, file);
+      config.source = std::string(scheme) + file;
+    }
   return config;
 }
 

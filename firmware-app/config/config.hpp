@@ -26,6 +26,7 @@ struct Config {
   } track;
   struct Sensor {
     std::string description;
+    double patience_s = 60;
   } sensor;
   struct Run {
     int threads = 1;

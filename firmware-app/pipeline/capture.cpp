@@ -23,7 +23,10 @@ void Capture::run() {
     source_.next(kPatienceMs, item);
     if (item.event != SourceEvent::timeout || source_.live()) beats_.fetch_add(1, std::memory_order_relaxed);
     if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
-    if (item.event == SourceEvent::timeout) continue;
+    if (item.event == SourceEvent::timeout) {
+      if (!item.fault.empty()) note_fault(item.fault);
+      continue;
+    }
     ++taken;
     device_.store(DeviceState::streaming, std::memory_order_relaxed);
     const DepthFrame& frame = item.frame;
@@ -44,6 +47,12 @@ void Capture::run() {
   device_.store(item.event == SourceEvent::lost ? DeviceState::lost : DeviceState::ended,
                 std::memory_order_relaxed);
   ring_.close();
+}
+
+DeviceState Capture::device() const noexcept {
+  const DeviceState own = device_.load(std::memory_order_relaxed);
+  const bool over = own == DeviceState::ended || own == DeviceState::lost;
+  return over || monitor() == nullptr ? own : monitor()->state();
 }
 
 void Capture::wait_until_due(std::int64_t utime) {

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "drivers/depth_source/depth_source.hpp"
-#include "drivers/lcm/messages.hpp"
 #include "firmware-app/pipeline/frame_ring.hpp"
 
 namespace pliant {
@@ -29,7 +28,10 @@ class Capture {
   [[nodiscard]] std::int64_t bad_frames() const noexcept {
     return bad_frames_.load(std::memory_order_relaxed);
   }
-  [[nodiscard]] DeviceState device() const noexcept { return device_.load(std::memory_order_relaxed); }
+  /// As the source's monitor says, and for a source without one: opening, streaming, ended.
+  [[nodiscard]] DeviceState device() const noexcept;
+  /// Null where the source watches no device.
+  [[nodiscard]] const DeviceMonitor* monitor() const noexcept { return source_.monitor(); }
   /// Grows with every answer of the source: a frame, or, from a live one, that none has come yet.
   [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
   /// The latest fault, in one line; empty when there was none. Copied without a heap call.

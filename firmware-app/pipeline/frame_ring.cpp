@@ -1,5 +1,7 @@
 #include "firmware-app/pipeline/frame_ring.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cstring>
 
 namespace pliant {
@@ -68,17 +70,23 @@ bool FrameRing::push(const DepthFrame& frame, std::int64_t arrival_ns) {
   return true;
 }
 
-const CapturedFrame* FrameRing::pop() {
+bool FrameRing::any(Use use) const {
+  return std::any_of(slots_.begin(), slots_.end(), [use](const Slot& slot) { return slot.use == use; });
+}
+
+const CapturedFrame* FrameRing::pop(int timeout_ms) {
   std::unique_lock lock(mutex_);
   if (Slot* done = find(Use::reading, true); done != nullptr) {
     done->use = Use::free;
     changed_.notify_all();
   }
-  Slot* slot = nullptr;
-  while ((slot = find(Use::queued, policy_ == Policy::keep_all)) == nullptr) {
-    if (closed_) return nullptr;
-    changed_.wait(lock);
-  }
+  const auto there = [this] { return closed_ || any(Use::queued); };
+  if (timeout_ms < 0)
+    changed_.wait(lock, there);
+  else
+    changed_.wait_for(lock, std::chrono::milliseconds(timeout_ms), there);
+  Slot* slot = find(Use::queued, policy_ == Policy::keep_all);
+  if (slot == nullptr) return nullptr;
   slot->use = Use::reading;
   if (policy_ == Policy::newest)
     for (Slot& other : slots_)
@@ -101,6 +109,11 @@ void FrameRing::abort() {
   for (Slot& slot : slots_)
     if (slot.use == Use::queued) slot.use = Use::free;
   changed_.notify_all();
+}
+
+bool FrameRing::ended() const {
+  const std::lock_guard lock(mutex_);
+  return closed_ && !any(Use::queued);
 }
 
 std::uint64_t FrameRing::dropped() const {

@@ -33,8 +33,11 @@ class FrameRing {
 
   /// Copies a frame of the camera's size in. False when the ring was closed.
   bool push(const DepthFrame& frame, std::int64_t arrival_ns);
-  /// The next frame, waiting for one; null when the ring is closed and empty. Valid until the next pop().
-  [[nodiscard]] const CapturedFrame* pop();
+  /// The next frame, waiting for one, at most `timeout_ms` where that is not negative; null when none came in
+  /// that time or the ring ended(). Valid until the next pop().
+  [[nodiscard]] const CapturedFrame* pop(int timeout_ms = -1);
+  /// Closed and empty.
+  [[nodiscard]] bool ended() const;
   /// No more frames come; those in the ring can still be taken.
   void close();
   /// Ends at once: what is in the ring is thrown away and not counted as dropped.
@@ -51,6 +54,7 @@ class FrameRing {
     std::uint64_t sequence = 0;
   };
   [[nodiscard]] Slot* find(Use use, bool oldest);
+  [[nodiscard]] bool any(Use use) const;
 
   const Policy policy_;
   std::array<Slot, kSlots> slots_;

@@ -134,8 +134,10 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   TrackMessages messages(model.positions(), model.header().checksum);
   std::unique_ptr<LcmPublisher> publisher;
   if (settings.lcm_url != "none") {
-    Result<std::unique_ptr<LcmPublisher>> made =
-        LcmPublisher::create({settings.lcm_url, settings.lcm_prefix}, model.size(), send_watch.observer());
+    Result<std::unique_ptr<LcmPublisher>> made = LcmPublisher::create(
+        {settings.lcm_url, settings.lcm_prefix, settings.publish_depth ? camera.width : 0,
+         settings.publish_depth ? camera.height : 0},
+        model.size(), send_watch.observer());
     if (!made) return made.error();
     publisher = std::move(*made);
     warn(settings, publisher->warning());
@@ -192,6 +194,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
     end.source_hangs = true;
     static_cast<void>(capture_side.release());
   }
+  loop.publish_end(figures);
   if (publisher != nullptr) {
     static_cast<void>(publisher->flush(300));
     figures.sent = publisher->counters();

@@ -11,6 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr int kIdleMs = 20;  // how late a change of the device's state may be told
 
 std::int32_t microseconds(std::int64_t nanoseconds) {
   return static_cast<std::int32_t>((nanoseconds + 500) / 1000);
@@ -32,8 +33,14 @@ void TrackingLoop::run(RunFigures& figures) {
   parts_.tracker.observe(figures.profile.observer());
   std::int64_t end_ns = 0;
   std::optional<PathWatch> watch(std::in_place, parts_.cost);
-  while (const CapturedFrame* captured = parts_.ring.pop()) {
-    if (first_arrival_ns_ == 0) first_arrival_ns_ = last_status_ns_ = captured->arrival_ns;
+  last_status_ns_ = monotonic_ns();
+  while (!parts_.ring.ended()) {
+    const CapturedFrame* captured = parts_.ring.pop(kIdleMs);
+    if (captured == nullptr) {
+      publish_status_if_due(figures, false);
+      continue;
+    }
+    if (first_arrival_ns_ == 0) first_arrival_ns_ = captured->arrival_ns;
     parts_.live.begun.fetch_add(1, std::memory_order_relaxed);
     take(*captured, figures);
     parts_.live.finished.fetch_add(1, std::memory_order_relaxed);
@@ -43,10 +50,21 @@ void TrackingLoop::run(RunFigures& figures) {
   figures.seconds = static_cast<double>(end_ns - first_arrival_ns_) * 1e-9;
   figures.deadline_misses = work_.misses();
   figures.least_work_level = work_.least_level();
-  if (parts_.publisher != nullptr && last_frame_ >= 0) publish_status(figures);
   watch.reset();
   parts_.tracker.observe({});
   if (settings_.hash) figures.output_sha256 = hash_.hex();
+}
+
+void TrackingLoop::publish_end(const RunFigures& figures) {
+  if (parts_.publisher != nullptr) publish_status(figures);
+}
+
+void TrackingLoop::publish_status_if_due(const RunFigures& figures, bool state_changed) {
+  if (parts_.publisher == nullptr) return;
+  const DeviceMonitor* monitor = parts_.capture.monitor();
+  const bool device_changed =
+      monitor != nullptr && (parts_.capture.device() != told_device_ || monitor->fault() != told_fault_);
+  if (state_changed || device_changed || monotonic_ns() - last_status_ns_ >= kSecond) publish_status(figures);
 }
 
 void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
@@ -70,8 +88,7 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   hand_over(captured, result);
   if (parts_.witness.seen != nullptr) parts_.witness.seen(parts_.witness.context, captured.frame, result);
   parts_.tracker.set_work_level(work_.next_level(figures.profile.last_total()));
-  if (parts_.publisher != nullptr && (state_changed || monotonic_ns() - last_status_ns_ >= kSecond))
-    publish_status(figures);
+  publish_status_if_due(figures, state_changed);
 
   parts_.live.frame.store(captured.frame.number, std::memory_order_relaxed);
   parts_.live.frames.store(figures.frames(), std::memory_order_relaxed);
@@ -99,6 +116,22 @@ void TrackingLoop::hand_over(const CapturedFrame& captured, const TrackResult& r
   if (parts_.files != nullptr) parts_.files->submit(result);
 }
 
+void TrackingLoop::fill_device(StatusContent& status) const {
+  status.device = parts_.capture.device();
+  const DeviceMonitor* monitor = parts_.capture.monitor();
+  if (monitor == nullptr) return;
+  status.stream_fault = monitor->fault();
+  status.zero_frames = monitor->frames(StreamFault::zero);
+  status.stuck_frames = monitor->frames(StreamFault::stuck);
+  status.noise_frames = monitor->frames(StreamFault::noise);
+  status.wrong_size_frames = monitor->frames(StreamFault::wrong_size);
+  status.delayed_frames = monitor->frames(StreamFault::delayed);
+  status.slow_frames = monitor->frames(StreamFault::slow);
+  status.broken_frames = monitor->frames(StreamFault::broken);
+  status.stalls = monitor->stalls();
+  status.reopenings = monitor->reopenings();
+}
+
 void TrackingLoop::publish_status(const RunFigures& figures) {
   const std::int64_t now = monotonic_ns();
   std::array<StageTimes, kStageCount + 1> stages{};
@@ -121,7 +154,7 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   status.model_id = settings_.model_id;
   status.frame = last_frame_;
   status.state = figures.last_state;
-  status.device = parts_.capture.device();
+  fill_device(status);
   status.rate = seconds > 0
                     ? static_cast<float>(static_cast<double>(figures.frames() - frames_at_status_) / seconds)
                     : 0.0F;
@@ -144,6 +177,8 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   status.last_error = fault.data();
   parts_.publisher->publish_status(status);
 
+  told_device_ = status.device;
+  told_fault_ = status.stream_fault;
   recent_.clear();
   last_status_ns_ = now;
   frames_at_status_ = figures.frames();

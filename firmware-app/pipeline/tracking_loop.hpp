@@ -50,11 +50,15 @@ class TrackingLoop {
 
   /// Until the ring is closed and empty.
   void run(RunFigures& figures);
+  /// Tells how the run ended; after run() and when the source is closed.
+  void publish_end(const RunFigures& figures);
 
  private:
   void take(const CapturedFrame& captured, RunFigures& figures);
   void hand_over(const CapturedFrame& captured, const TrackResult& result);
+  void publish_status_if_due(const RunFigures& figures, bool state_changed);
   void publish_status(const RunFigures& figures);
+  void fill_device(StatusContent& status) const;
 
   Parts parts_;
   const Settings settings_;
@@ -63,6 +67,8 @@ class TrackingLoop {
   OutputHash hash_;
   std::int64_t first_arrival_ns_ = 0, last_status_ns_ = 0, frames_at_status_ = 0;
   std::int64_t last_frame_ = -1;
+  DeviceState told_device_ = DeviceState::absent;  // by the last status
+  StreamFault told_fault_ = StreamFault::none;
 };
 
 }  // namespace pliant

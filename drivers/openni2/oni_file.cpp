@@ -1,0 +1,126 @@
+// Playback of .oni recordings.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <utility>
+#include <vector>
+
+#include "drivers/openni2/oni_layout.hpp"
+#include "drivers/openni2/openni2.hpp"
+#include "drivers/openni2/openni2_stream.hpp"
+
+namespace pliant {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// After its last frame the library says nothing at all; a frame that it announced and does not bring in this
+/// time does not come.
+constexpr auto kLongestGap = std::chrono::seconds(3);
+
+class OniFile final : public DepthSource {
+ public:
+  OniFile(std::shared_ptr<OpenNi2Library> library, const SensorDescription& sensor)
+      : library_(std::move(library)), sensor_(sensor), stream_(library_) {}
+
+  [[nodiscard]] Outcome open(const std::string& file, const SourceWish& wish) {
+    if (Outcome done = stream_.open(file); !done) return done;
+    const OpenNi2Api& api = library_->api();
+    // By hand instead of by the clock: a frame is read when it is asked for, and none is left out.
+    const float speed = -1;
+    const OniBool repeat = FALSE;
+    if (const OniStatus status =
+            api.device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_SPEED, &speed, sizeof speed);
+        status != ONI_STATUS_OK)
+      return library_->fault("the speed of playback cannot be set", status);
+    if (const OniStatus status = api.device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED,
+                                                &repeat, sizeof repeat);
+        status != ONI_STATUS_OK)
+      return library_->fault("repeating cannot be switched off", status);
+    if (Outcome done = stream_.learn(wish); !done) return done;
+    int count = 0;
+    if (!stream_.get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, count) || count < 1)
+      return Error{ErrorKind::bad_input, "the recording holds no depth frame"};
+    count_ = count;
+    if (stream_.mirrored())
+      turned_.resize(static_cast<std::size_t>(stream_.camera().width) *
+                     static_cast<std::size_t>(stream_.camera().height));
+    return stream_.start();
+  }
+  [[nodiscard]] const Intrinsics& intrinsics() const override { return stream_.camera(); }
+  [[nodiscard]] const SensorDescription& sensor() const override { return sensor_; }
+  [[nodiscard]] bool live() const override { return false; }
+  [[nodiscard]] double rate() const override { return stream_.rate(); }
+  [[nodiscard]] std::int64_t frame_count() const override { return count_; }
+  void close() override {
+    stream_.close();
+    closed_ = true;
+  }
+
+  void next(int timeout_ms, SourceItem& item) override {
+    item.frame = {};
+    item.fault.clear();
+    item.event = SourceEvent::end;
+    if (closed_ || number_ >= count_) return;
+    if (!waiting_) {
+      waiting_ = true;
+      last_ = Clock::now();
+    }
+    switch (stream_.read(timeout_ms, item.frame, item.fault)) {
+      case OpenNi2Stream::Got::frame:
+        item.event = SourceEvent::frame;
+        if (stream_.mirrored()) turn(item.frame);
+        break;
+      case OpenNi2Stream::Got::unfit:
+        item.event = SourceEvent::bad_frame;
+        break;
+      case OpenNi2Stream::Got::timeout:
+        if (Clock::now() - last_ < kLongestGap) {
+          item.event = SourceEvent::timeout;
+          return;
+        }
+        closed_ = true;  // cut off: what was announced is not there
+        return;
+      case OpenNi2Stream::Got::failed:
+        item.event = SourceEvent::lost;
+        return;
+    }
+    waiting_ = false;
+    item.frame.number = number_++;
+  }
+
+ private:
+  void turn(DepthFrame& frame) {
+    const auto width = static_cast<std::size_t>(frame.width), height = static_cast<std::size_t>(frame.height);
+    if (width * height > turned_.size()) return;  // another size; whoever takes it refuses it
+    for (std::size_t v = 0; v < height; ++v) {
+      const std::uint16_t* row = frame.depth + static_cast<std::ptrdiff_t>(v) * frame.stride;
+      for (std::size_t u = 0; u < width; ++u) turned_[v * width + u] = row[width - 1 - u];
+    }
+    frame.depth = turned_.data();
+    frame.stride = frame.width;
+  }
+
+  std::shared_ptr<OpenNi2Library> library_;
+  SensorDescription sensor_;
+  OpenNi2Stream stream_;
+  std::vector<std::uint16_t> turned_;
+  std::int64_t count_ = 0, number_ = 0;
+  Clock::time_point last_;
+  bool waiting_ = false, closed_ = false;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<DepthSource>> open_oni(std::shared_ptr<OpenNi2Library> library,
+                                              const std::filesystem::path& file, const SourceWish& wish) {
+  // The library's own messages name neither the file nor what is wrong with it.
+  if (const Outcome sound = check_oni_layout(file); !sound) return sound.error();
+  auto source = std::make_unique<OniFile>(std::move(library), wish.sensor);
+  if (const Outcome opened = source->open(std::filesystem::absolute(file).string(), wish); !opened)
+    return Error{ErrorKind::bad_input, fmt::format("{}: {}", file.string(), opened.error().message)};
+  return std::unique_ptr<DepthSource>(std::move(source));
+}
+
+}  // namespace pliant

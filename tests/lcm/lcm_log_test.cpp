@@ -1,0 +1,136 @@
+// LCM logs, whole and damaged, and the depth pictures in them.
+#include "drivers/lcm/lcm_log.hpp"
+
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "drivers/lcm/depth_log.hpp"
+#include "drivers/lcm/depth_messages.hpp"
+
+namespace pliant {
+namespace {
+
+class Log : public testing::Test {
+ protected:
+  Log() {
+    std::string name = (std::filesystem::temp_directory_path() / "pliant_log_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+    file_ = folder_ / "log";
+  }
+  ~Log() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  /// Pictures of 320 x 240, four messages each, by LCM's own writer; `left_out` of all messages is not sent.
+  void write(int pictures, int left_out = -1) {
+    lcm_t* lcm = lcm_create(("file://" + file_.string() + "?mode=w").c_str());
+    ASSERT_NE(lcm, nullptr);
+    DepthMessages messages(320, 240);
+    int sent = 0;
+    for (int i = 0; i < pictures; ++i) {
+      std::vector<std::uint16_t> pixels(320 * 240, static_cast<std::uint16_t>(700 + i));
+      const DepthFrame frame{pixels.data(), 320, 240, 320, 1'000'000 + i * 33'333, 50 + i};
+      lcm_publish(lcm, "OTHER", "x", 1);
+      for (const MessageBody& body : messages.encode(frame, kCamera))
+        if (sent++ != left_out)
+          lcm_publish(lcm, "PLIANT_DEPTH", body.bytes.data(), static_cast<unsigned>(body.bytes.size()));
+    }
+    lcm_destroy(lcm);
+  }
+  std::string bytes() const {
+    std::ostringstream text;
+    text << std::ifstream(file_, std::ios::binary).rdbuf();
+    return text.str();
+  }
+  void write_bytes(const std::string& text) const { std::ofstream(file_, std::ios::binary) << text; }
+
+  static constexpr Intrinsics kCamera{320, 240, 285, 286, 159.5, 119.5, 1000};
+  std::filesystem::path folder_, file_;
+};
+
+TEST_F(Log, EveryMessageIsReadAsItWasSent) {
+  write(3);
+  Result<LcmLog> log = LcmLog::open(file_);
+  ASSERT_TRUE(log) << log.error().message;
+  LcmLogEvent event;
+  int depth = 0, other = 0;
+  for (std::int64_t number = 0; log->next(event); ++number) {
+    EXPECT_EQ(event.number, number);
+    ++(event.channel == "PLIANT_DEPTH" ? depth : other);
+  }
+  EXPECT_EQ(depth, 9);
+  EXPECT_EQ(other, 3);
+  EXPECT_EQ(log->damages(), 0);
+}
+
+TEST_F(Log, DamagedStretchesArePassedOver) {
+  write(2);
+  std::string text = bytes();
+  const std::size_t second = text.find("PLIANT_DEPTH");
+  text.replace(second - 8, 4, "\x7f\xff\xff\xff");  // the length of a channel's name
+  write_bytes("\xED\xA1\xDA\x01 and rubbish" + text + std::string("\xED\xA1\xDA\x01\0\0", 6));
+  Result<LcmLog> log = LcmLog::open(file_);
+  ASSERT_TRUE(log);
+  LcmLogEvent event;
+  int read = 0;
+  while (log->next(event)) ++read;
+  EXPECT_EQ(read, 7);
+  EXPECT_GE(log->damages(), 2);
+}
+
+TEST_F(Log, PicturesComeBackWithStampsAndNumbers) {
+  write(5);
+  auto source = open_depth_log(file_);
+  ASSERT_TRUE(source) << source.error().message;
+  EXPECT_EQ((*source)->intrinsics().fy, 286);
+  EXPECT_FALSE((*source)->live());
+  SourceItem item;
+  for (int i = 0; i < 5; ++i) {
+    (*source)->next(10, item);
+    ASSERT_EQ(item.event, SourceEvent::frame) << item.fault;
+    EXPECT_EQ(item.frame.number, i);
+    EXPECT_EQ(item.frame.utime, 1'000'000 + i * 33'333);
+    EXPECT_EQ(item.frame.depth[0], 700 + i);
+    EXPECT_EQ(item.frame.depth[320 * 240 - 1], 700 + i);
+  }
+  (*source)->next(10, item);
+  EXPECT_EQ(item.event, SourceEvent::end);
+}
+
+TEST_F(Log, APictureWithAPartMissingIsBadAndTheOthersAreNot) {
+  for (const int left_out : {4, 11}) {  // in the middle, and the very last
+    write(4, left_out);
+    auto source = open_depth_log(file_);
+    ASSERT_TRUE(source);
+    SourceItem item;
+    std::string events;
+    for (int i = 0; i < 5; ++i) {
+      (*source)->next(10, item);
+      events += item.event == SourceEvent::frame ? 'f' : item.event == SourceEvent::bad_frame ? 'b' : 'e';
+    }
+    EXPECT_EQ(events, left_out == 4 ? "fbffe" : "fffbe");
+  }
+}
+
+TEST_F(Log, WhatIsNoLogOrHoldsNoDepthIsRefused) {
+  const auto refusal = [this] {
+    const auto source = open_depth_log(file_);
+    EXPECT_FALSE(source);
+    return source ? std::string() : source.error().message;
+  };
+  EXPECT_NE(refusal().find("No such file"), std::string::npos);
+  write_bytes("not a log at all");
+  EXPECT_NE(refusal().find("not an LCM log"), std::string::npos);
+  write(0);
+  lcm_t* lcm = lcm_create(("file://" + file_.string() + "?mode=w").c_str());
+  lcm_publish(lcm, "PLIANT_DEPTH", "x", 1);
+  lcm_destroy(lcm);
+  EXPECT_NE(refusal().find("no depth pictures"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,97 @@
+// .oni recordings, made by the library's recorder and played by its driver.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <vector>
+
+#include "drivers/openni2/openni2.hpp"
+#include "tests/openni2/sensor_rig.hpp"
+
+namespace pliant::test {
+namespace {
+
+class Oni : public testing::Test {
+ protected:
+  Result<std::unique_ptr<DepthSource>> open(const std::filesystem::path& file) {
+    auto library = OpenNi2Library::start();
+    if (!library) return library.error();
+    return open_oni(*library, file, {});
+  }
+  SensorRig rig_;
+};
+
+TEST_F(Oni, EveryFramePlaysBitForBitAndTheEndIsTold) {
+  rig_.control().rate = 60;
+  const std::filesystem::path file = rig_.folder() / "twelve.oni";
+  rig_.record_oni(file, 12);
+  for (int round = 0; round < 2; ++round) {
+    auto source = open(file);
+    ASSERT_TRUE(source) << source.error().message;
+    EXPECT_FALSE((*source)->live());
+    EXPECT_GE((*source)->frame_count(), 12);
+    const Intrinsics& camera = (*source)->intrinsics();
+    EXPECT_EQ(camera.width, 320);
+    EXPECT_EQ(camera.height, 240);
+    EXPECT_NEAR(camera.fx, 285, 0.01);
+    EXPECT_NEAR(camera.fy, 285, 0.01);
+    EXPECT_EQ(camera.cx, 159.5);
+    SourceItem item;
+    std::int64_t count = 0, before = -1;
+    for (;;) {
+      (*source)->next(2000, item);
+      if (item.event != SourceEvent::frame) break;
+      ASSERT_EQ(item.frame.number, count);
+      ASSERT_EQ(item.frame.stride, 320);
+      EXPECT_GT(item.frame.utime, before);
+      before = item.frame.utime;
+      const std::uint16_t* expected = rig_.frame(static_cast<int>(count < 20 ? count : 38 - count));
+      ASSERT_EQ(std::memcmp(item.frame.depth, expected, 320 * 240 * 2), 0) << "frame " << count;
+      ++count;
+    }
+    EXPECT_EQ(item.event, SourceEvent::end);
+    EXPECT_EQ(count, (*source)->frame_count());
+    (*source)->next(10, item);
+    EXPECT_EQ(item.event, SourceEvent::end);
+  }
+}
+
+TEST_F(Oni, WhatIsNoRecordingIsRefusedWithTheReason) {
+  const auto refusal = [this](const std::filesystem::path& file) {
+    const auto source = open(file);
+    EXPECT_FALSE(source);
+    if (source) return std::string("it was opened");
+    EXPECT_EQ(source.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(source.error().message.find(file.filename().string()), std::string::npos);
+    return source.error().message;
+  };
+  EXPECT_NE(refusal(rig_.folder() / "none.oni").find("No such file"), std::string::npos);
+  EXPECT_NE(refusal(rig_.folder()).find("folder"), std::string::npos);
+  std::ofstream(rig_.folder() / "text.oni") << "just a text that is long enough";
+  EXPECT_NE(refusal(rig_.folder() / "text.oni").find("not an .oni recording"), std::string::npos);
+
+  rig_.control().rate = 60;
+  const std::filesystem::path file = rig_.folder() / "whole.oni";
+  rig_.record_oni(file, 5);
+  std::filesystem::resize_file(file, 100'000);
+  EXPECT_NE(refusal(file).find("cut short"), std::string::npos);
+  std::filesystem::resize_file(file, 30);
+  EXPECT_NE(refusal(file).find("cut short at byte 24"), std::string::npos);
+}
+
+TEST_F(Oni, ARecordingWithAHoleIsRefused) {
+  rig_.control().rate = 60;
+  const std::filesystem::path file = rig_.folder() / "hole.oni";
+  rig_.record_oni(file, 5);
+  {
+    std::fstream edit(file, std::ios::in | std::ios::out | std::ios::binary);
+    edit.seekp(24 + 74);  // the second record
+    edit << "XXXX";
+  }
+  const auto source = open(file);
+  ASSERT_FALSE(source);
+  EXPECT_NE(source.error().message.find("damaged at byte 98"), std::string::npos) << source.error().message;
+}
+
+}  // namespace
+}  // namespace pliant::test

@@ -1,0 +1,112 @@
+// What is said of devices on the bus.
+#include "drivers/usb/usb_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace pliant {
+namespace {
+
+UsbDevice device(std::uint16_t vendor, std::uint16_t product, int megabits = 5000) {
+  UsbDevice d;
+  d.vendor = vendor;
+  d.product = product;
+  d.bus = 1;
+  d.address = 5;
+  d.port = "1-2";
+  d.megabits = megabits;
+  d.accessible = true;
+  return d;
+}
+
+UsbFinding judge(const UsbDevice& device, const UsbServed& served = {}) {
+  const auto findings = judge_usb_devices({&device, 1}, served);
+  EXPECT_EQ(findings.size(), 1U);
+  return findings.empty() ? UsbFinding{} : findings.front();
+}
+
+TEST(UsbTable, HoldsEachDeviceOnceWithADescriptionThatExists) {
+  std::set<std::pair<int, int>> seen;
+  for (const UsbDeviceKind& kind : usb_device_kinds()) {
+    EXPECT_TRUE(seen.emplace(kind.vendor, kind.product).second) << kind.name;
+    EXPECT_FALSE(kind.name.empty());
+    EXPECT_TRUE(kind.access != UsbAccess::unsupported || !kind.remark.empty()) << kind.name;
+    const std::filesystem::path sensor =
+        std::filesystem::path(PLIANT_CONFIG_FOLDER) / "sensors" / kind.sensor;
+    EXPECT_TRUE(std::filesystem::exists(sensor)) << sensor;
+  }
+  EXPECT_EQ(find_usb_device_kind(0x1d27, 0x0600)->access, UsbAccess::openni2);
+  EXPECT_EQ(find_usb_device_kind(0x1d6b, 0x0002), nullptr);
+}
+
+TEST(UdevRules, GiveEveryUsableDeviceToWhoSitsThereAndNothingElse) {
+  std::ifstream file(std::filesystem::path(PLIANT_CONFIG_FOLDER) / "60-pliant.rules");
+  ASSERT_TRUE(file);
+  // A line of matches and assignments, as udev(7) says.
+  const std::regex rule(R"re((([A-Z]+(\{[A-Za-z]+\})?(==|!=|\+=|=)"[^"]*")(, )?)+)re");
+  std::set<std::string> given;
+  bool labelled = false;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    EXPECT_TRUE(std::regex_match(line, rule)) << line;
+    labelled = labelled || line == R"(LABEL="pliant_end")";
+    if (line.find("uaccess") != std::string::npos) given.insert(line.substr(0, line.find(", GROUP")));
+  }
+  EXPECT_TRUE(labelled);
+  std::set<std::string> wanted;
+  for (const UsbDeviceKind& kind : usb_device_kinds())
+    if (kind.access != UsbAccess::unsupported) wanted.insert(udev_rule(kind.vendor, kind.product));
+  EXPECT_EQ(given, wanted);
+}
+
+TEST(UsbReport, OtherDevicesAreNoConcernOfOurs) {
+  const std::vector<UsbDevice> devices = {device(0x1d6b, 2), device(0x046d, 0xc52b)};
+  EXPECT_TRUE(judge_usb_devices(devices, {}).empty());
+}
+
+TEST(UsbReport, AUsableDeviceHasNoTrouble) {
+  EXPECT_EQ(judge(device(0x1d27, 0x0600, 480), {{{0x1d27, 0x0600}}, {}, false}).trouble, UsbTrouble::none);
+  EXPECT_EQ(judge(device(0x8086, 0x0b07), {{}, {"usb-0000:00:14.0-2"}, false}).trouble, UsbTrouble::none);
+}
+
+TEST(UsbReport, EachTroubleIsToldWithItsMend) {
+  UsbDevice sensor = device(0x1d27, 0x0600, 480);
+  sensor.accessible = false;
+  UsbFinding finding = judge(sensor);
+  EXPECT_EQ(finding.trouble, UsbTrouble::no_permission);
+  EXPECT_NE(finding.reason.find("/dev/bus/usb/001/005"), std::string::npos);
+  EXPECT_NE(finding.reason.find(R"(ATTR{idVendor}=="1d27", ATTR{idProduct}=="0600", TAG+="uaccess")"),
+            std::string::npos)
+      << finding.reason;
+
+  finding = judge(device(0x1d27, 0x0600, 480));
+  EXPECT_EQ(finding.trouble, UsbTrouble::no_driver);
+  EXPECT_NE(finding.reason.find("libopenni2-0"), std::string::npos);
+
+  finding = judge(device(0x045e, 0x02ae, 480));
+  EXPECT_EQ(finding.trouble, UsbTrouble::no_driver);
+  EXPECT_NE(finding.reason.find("libfreenect"), std::string::npos);
+
+  finding = judge(device(0x8086, 0x0b07, 480));
+  EXPECT_EQ(finding.trouble, UsbTrouble::wrong_mode);
+  EXPECT_NE(finding.reason.find("USB 3"), std::string::npos);
+
+  finding = judge(device(0x8086, 0x0b07), {{}, {"usb-0000:00:14.0-3"}, false});
+  EXPECT_EQ(finding.trouble, UsbTrouble::no_driver);
+  EXPECT_NE(finding.reason.find("uvcvideo"), std::string::npos);
+
+  finding = judge(device(0x8086, 0x0b07), {{}, {}, true});
+  EXPECT_EQ(finding.trouble, UsbTrouble::busy);
+
+  finding = judge(device(0x2959, 0x1234));
+  EXPECT_EQ(finding.trouble, UsbTrouble::unsupported);
+  EXPECT_NE(finding.reason.find("Structure Core"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant
