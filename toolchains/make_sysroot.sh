@@ -16,7 +16,7 @@ case $arch in arm64 | armhf) ;; *) die "unknown architecture '$arch'; arm64 and 
 packages=(libc6-dev libstdc++-12-dev libeigen3-dev libnanoflann-dev libfmt-dev libcli11-dev
   libtomlplusplus-dev nlohmann-json3-dev libpng-dev nettle-dev liblcm-dev libopenni2-dev libusb-1.0-0-dev libgtest-dev libbenchmark-dev "$@")
 stamp=$dir/.packages
-[ -f "$stamp" ] && [ "$(cat "$stamp")" = "${packages[*]}" ] && exit 0
+[ -f "$stamp" ] && [ -d "$dir/.shlibs" ] && [ "$(cat "$stamp")" = "${packages[*]}" ] && exit 0
 
 command -v apt-get >/dev/null || die "needs apt-get, on Debian 12"
 scratch=$(mktemp -d)
@@ -40,7 +40,12 @@ apt-get "${options[@]}" -qq -y --download-only install "${packages[@]}" >"$scrat
 
 rm -rf "$dir"
 mkdir -p "$dir"
-for package in "$scratch"/cache/archives/*.deb; do dpkg -x "$package" "$dir"; done
+mkdir -p "$dir/.shlibs"
+for package in "$scratch"/cache/archives/*.deb; do
+  dpkg -x "$package" "$dir"
+  # Which package to depend on for which library: packaging/dependencies.sh reads it.
+  dpkg -I "$package" shlibs >"$dir/.shlibs/$(basename "$package").shlibs" 2>/dev/null || true
+done
 # Links to absolute places would lead out of the sysroot.
 find "$dir" -type l -lname '/*' -print0 | while IFS= read -r -d '' link; do
   ln -snf "$(realpath -m --relative-to="$(dirname "$link")" "$dir$(readlink "$link")")" "$link"

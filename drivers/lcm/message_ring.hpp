@@ -94,7 +94,9 @@ class MessageRing {
     std::size_t count = 0;
     std::int64_t utime = 0;
   };
-  [[nodiscard]] Slot& slot_of(std::uint64_t sequence) noexcept { return slots_[sequence % slots_.size()]; }
+  [[nodiscard]] Slot& slot_of(std::uint64_t sequence) noexcept {
+    return slots_[static_cast<std::size_t>(sequence % slots_.size())];
+  }
 
   /// False where the consumer has the slot. It has one at a time and only takes filled ones, so trying one
   /// slot after the other ends within one round.

@@ -2,35 +2,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/simd/cpu.hpp"
 #include "drivers/geometry_files/atomic_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
-#include "firmware-app/commands/inputs.hpp"
-#include "firmware-app/config/config.hpp"
-#include "firmware-app/config/sensor_file.hpp"
+#include "firmware-app/commands/run_inputs.hpp"
+#include "firmware-app/measure/clock.hpp"
 #include "firmware-app/outputs/run_report.hpp"
-#include "firmware-app/pipeline/run_pipeline.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
+#include "firmware-app/pipeline/worker.hpp"
+#include "firmware-app/service/reload_signal.hpp"
+#include "firmware-app/service/service_link.hpp"
 
 namespace pliant {
 
 namespace {
-
-struct RunOptions {
-  std::string config;
-  std::optional<std::string> model, source, lcm_url, sensor;
-  bool publish_depth = false;
-  std::string trajectory, points, stats;
-  std::int64_t frames = -1;
-  std::optional<std::string> pace;
-  std::optional<int> threads;
-  Kernels kernels = Kernels::automatic;
-};
 
 const std::map<std::string, Kernels> kKernelNames = {{"auto", Kernels::automatic},
                                                      {"scalar", Kernels::scalar},
@@ -38,26 +31,7 @@ const std::map<std::string, Kernels> kKernelNames = {{"auto", Kernels::automatic
                                                      {"avx2", Kernels::avx2},
                                                      {"neon", Kernels::neon}};
 
-/// The config file, with the command line's values put over it.
-Result<Config> merged_config(const RunOptions& options) {
-  Config config;
-  if (!options.config.empty()) {
-    Result<Config> read = read_config(options.config);
-    if (!read) return read.error();
-    config = *read;
-  }
-  if (options.model) config.model = *options.model;
-  if (options.source) config.source = *options.source;
-  if (options.lcm_url) config.lcm.url = *options.lcm_url;
-  if (options.sensor) config.sensor.description = *options.sensor;
-  if (options.publish_depth) config.lcm.publish_depth = true;
-  if (options.threads) config.run.threads = *options.threads;
-  if (config.source.empty())
-    return Error{ErrorKind::bad_input,
-                 "no source: give --source URI or 'source' in the config, for example --source " +
-                     std::string(kSourceExample)};
-  return config;
-}
+constexpr int kCloseMs = 300;
 
 /// -1 where unknown.
 std::int64_t frames_to_come(std::int64_t in_source, std::int64_t limit) {
@@ -93,62 +67,151 @@ int finish(const RunOptions& options, const RunEnd& end, AtomicFile& stats) {
   return figures.last_state == TrackState::tracking ? kExitDone : kExitNotFound;
 }
 
+/// What a person, and the service manager, read while a run goes on.
+class Watcher {
+ public:
+  Watcher() : link_(ServiceLink::from_environment(warning_)) {
+    if (!warning_.empty()) print_warning(warning_);
+  }
+
+  void warn(const std::string& message) {
+    line_.clear();
+    print_warning(message);
+  }
+  void look(const LiveFigures& live, std::int64_t frame_count) {
+    if (line_.active()) line_.show(status_line(live, frame_count));
+    tell_of_overload(live);
+    if (!link_.active()) return;
+    const std::int64_t now = monotonic_ns();
+    link_.update({live.captured.load(), live.begun.load(), live.finished.load()}, now);
+    link_.tell(status_line(live, frame_count), now);
+  }
+  void reloading() { link_.reloading(monotonic_ns()); }
+  void stopping(const RunFigures& figures) {
+    line_.clear();
+    link_.stopping(fmt::format("ended after {} frames, {} tracked", figures.frames(), figures.tracked));
+  }
+
+ private:
+  /// Once when work is shed for longer than a passing moment, and again only after all of it was done.
+  void tell_of_overload(const LiveFigures& live) {
+    const double level = live.work_level.load();
+    const std::int64_t now = monotonic_ns();
+    if (level >= kShedding) {
+      shedding_since_ns_ = now;
+      if (level >= 1) overloaded_ = false;
+      return;
+    }
+    if (overloaded_ || now - shedding_since_ns_ < kPassingNs) return;
+    overloaded_ = true;
+    warn(fmt::format(
+        "frames take longer than track.budget_ms: fewer points and iterations are used, work level "
+        "{:.2f}",
+        level));
+  }
+
+  static constexpr double kShedding = 0.9;
+  static constexpr std::int64_t kPassingNs = 3'000'000'000;
+  std::string warning_;
+  LiveLine line_;
+  ServiceLink link_;
+  bool overloaded_ = false;
+  std::int64_t shedding_since_ns_ = monotonic_ns();
+};
+
+/// The config as it is now, opened; an error keeps the old one.
+Result<RunInputs> reload(const RunOptions& options, const RunInputs& current) {
+  const Result<Config> config = merged_config(options);
+  if (!config) return config.error();
+  if (options.writes_files() && !changed_keys(current.config, *config).empty())
+    return Error{ErrorKind::bad_input, "a run that writes files keeps its config"};
+  return open_run_inputs(options, *config, &current);
+}
+
+/// A device or a file system that hangs must not hold the program's end up.
+bool close_in_time(DepthSource& source) {
+  auto closer = std::make_unique<Worker>();
+  std::string ignored;
+  if (!closer->start(
+          {.name = "pliant-close", .priority = 0, .affinity = {}}, [&source] { source.close(); }, ignored))
+    return false;
+  if (closer->join_within(kCloseMs)) return true;
+  static_cast<void>(closer.release());  // still used by its thread
+  return false;
+}
+
 int run(const RunOptions& options) {
   const StopSignal stop;
+  std::optional<ReloadSignal> reload_signal;
+  if (!options.config.empty()) reload_signal.emplace();
   const Result<Config> config = merged_config(options);
   if (!config) return report(config.error());
-  SourceOptions source_options;
-  source_options.patience = config->sensor.patience_s;
-  if (!config->sensor.description.empty()) {
-    const Result<SensorFile> sensor = read_sensor(config->sensor.description);
-    if (!sensor) return report(sensor.error());
-    source_options.sensor = *sensor;
-  }
-  Result<OpenSource> source = open_source(config->source, source_options);
-  if (!source) return report(source.error());
-  if (config->model.empty() && !brings_own_model(config->source))
-    return report({ErrorKind::bad_input,
-                   "no model: give --model FILE or 'model' in the config; 'pliant model build' makes one"});
-  Result<ModelFile> model = load_model(config->model, config->source);
-  if (!model) return report(model.error());
-
+  Result<RunInputs> opened = open_run_inputs(options, *config, nullptr);
+  if (!opened) return report(opened.error());
+  RunInputs inputs = std::move(*opened);
   warn_of_missing_kernels(options.kernels);
-  RunSettings settings;
-  settings.source_name = config->source;
-  settings.version = PLIANT_VERSION;
-  settings.sensor = source->source->sensor();
-  if (source_options.sensor) settings.sensor = source_options.sensor->noise;
-  settings.track.max_regions = config->track.max_regions;
-  settings.track.material = config->track.material;
-  settings.track.kernels = options.kernels;
-  settings.lcm_url = config->lcm.url;
-  settings.lcm_prefix = config->lcm.prefix;
-  settings.publish_depth = config->lcm.publish_depth;
-  settings.realtime = options.pace.value_or(source->source->live() ? "realtime" : "fast") == "realtime";
-  settings.frame_limit = options.frames;
-  settings.budget_ms = config->track.budget_ms;
-  settings.priority = config->run.priority;
-  settings.affinity = config->run.affinity;
-  settings.files = {.trajectory = options.trajectory, .points = options.points, .wait_for_disk = true};
-  settings.hash = !options.stats.empty();
-  LiveLine line;
-  const std::int64_t frame_count = frames_to_come(source->source->frame_count(), options.frames);
-  if (line.active())
-    settings.progress = [&](const LiveFigures& live) { line.show(status_line(live, frame_count)); };
-  settings.warn = [&](const std::string& message) {
-    line.clear();
-    print_warning(message);
-  };
 
   // Opened before the run, so that a run of hours does not end without its figures.
   AtomicFile stats;
   if (!options.stats.empty())
-    if (Outcome opened = stats.open(options.stats.c_str()); !opened) return report(opened.error());
+    if (Outcome opened_stats = stats.open(options.stats.c_str()); !opened_stats)
+      return report(opened_stats.error());
 
-  const Result<RunEnd> end = run_pipeline(*source->source, model->view(), settings);
-  line.clear();
-  if (!end) return report(end.error());
-  return finish(options, *end, stats);
+  Watcher watcher;
+  std::optional<RunInputs> next, before;
+  std::optional<RigidTransform> pose;
+  for (;;) {
+    RunSettings settings = inputs.settings;
+    settings.start_pose = pose;
+    const std::int64_t frame_count = frames_to_come(inputs.source->source->frame_count(), options.frames);
+    settings.warn = [&](const std::string& message) { watcher.warn(message); };
+    settings.progress = [&](const LiveFigures& live) { watcher.look(live, frame_count); };
+    settings.leave = [&] {
+      if (!ReloadSignal::take()) return false;
+      watcher.reloading();
+      Result<RunInputs> read = reload(options, inputs);
+      if (!read) {
+        watcher.warn("the old config stays: " + read.error().message);
+        return false;
+      }
+      const std::string changed = changed_keys(inputs.config, read->config);
+      watcher.warn(changed.empty() ? "config read again: nothing has changed"
+                                   : "config read again: " + changed);
+      if (changed.empty() && read->model == inputs.model) return false;
+      next = std::move(*read);
+      return true;
+    };
+
+    const Result<RunEnd> end = run_pipeline(*inputs.source->source, inputs.model->view(), settings);
+    if (!end) {
+      if (!before) return report(end.error());
+      watcher.warn("the old config comes back: " + end.error().message);
+      inputs = std::move(*before);
+      before.reset();
+      continue;
+    }
+    if (end->left && end->source_hangs) {
+      // It cannot be used again, nor closed; a service manager starts the program anew.
+      static_cast<void>(report({ErrorKind::device, "the device does not answer: it cannot be taken over"}));
+      std::fflush(nullptr);
+      std::_Exit(kExitFailed);
+    }
+    if (end->left && next) {
+      const bool same_object = next->model == inputs.model && next->source == inputs.source;
+      pose.reset();
+      if (same_object && end->figures.last_state == TrackState::tracking) pose = end->figures.last_pose;
+      before = std::exchange(inputs, std::move(*next));
+      next.reset();
+      continue;
+    }
+    watcher.stopping(end->figures);
+    const int code = finish(options, *end, stats);
+    if (!end->source_hangs && close_in_time(*inputs.source->source)) return code;
+    // Only a device notices.
+    if (inputs.source->source->live()) print_warning("the device does not answer: ended without closing it");
+    std::fflush(nullptr);
+    std::_Exit(code);
+  }
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ std::vector<Setting> config_settings(Config& c) {
       {"run", "threads", &c.run.threads, 1, 64, "", "threads that share the work of one frame"},
       {"run", "priority", &c.run.priority, 0, 99, "", "real-time priority of tracking, 0 for none"},
       {"run", "affinity", &c.run.affinity, 0, 1023, "", "processors that tracking may use, [] for all"},
+      {"run", "lock_memory", &c.run.lock_memory, 0, 1, "", "keep all of the program in memory"},
       {"view", "bind", &c.view.bind, 1, 255, "", "address that the web viewer listens on"},
       {"view", "port", &c.view.port, 1, 65535, "", "port that the web viewer listens on"},
   };
@@ -65,6 +66,19 @@ Result<Config> read_config(const std::string& path) {
       config.source = std::string(scheme) + file;
     }
   return config;
+}
+
+std::string changed_keys(const Config& before, const Config& after) {
+  Config old = before, now = after;
+  const std::vector<Setting> olds = config_settings(old), news = config_settings(now);
+  std::string keys;
+  for (std::size_t i = 0; i < olds.size(); ++i) {
+    if (setting_value(olds[i]) == setting_value(news[i])) continue;
+    if (!keys.empty()) keys += ", ";
+    if (!olds[i].table.empty()) keys.append(olds[i].table).append(".");
+    keys += olds[i].key;
+  }
+  return keys;
 }
 
 std::string describe_config(const Config& config) {

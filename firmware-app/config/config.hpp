@@ -32,6 +32,7 @@ struct Config {
     int threads = 1;
     int priority = 0;
     std::vector<int> affinity;
+    bool lock_memory = false;
   } run;
   struct View {
     std::string bind = "127.0.0.1";
@@ -45,6 +46,9 @@ struct Config {
 
 /// Reads a file. Paths in it (model, sensor description) are taken relative to its folder.
 [[nodiscard]] Result<Config> read_config(const std::string& path);
+
+/// The keys whose values differ, "track.budget_ms, lcm.prefix"; empty when none does.
+[[nodiscard]] std::string changed_keys(const Config& before, const Config& after);
 
 /// One line a key: name, value, range and meaning.
 [[nodiscard]] std::string describe_config(const Config& config);

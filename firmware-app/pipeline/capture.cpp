@@ -21,6 +21,7 @@ void Capture::run() {
   std::int64_t taken = 0;
   while (!stopped() && (settings_.frame_limit < 0 || taken < settings_.frame_limit)) {
     source_.next(kPatienceMs, item);
+    if (item.event != SourceEvent::timeout || source_.live()) beats_.fetch_add(1, std::memory_order_relaxed);
     if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
     if (item.event == SourceEvent::timeout) {
       if (!item.fault.empty()) note_fault(item.fault);
@@ -67,8 +68,10 @@ void Capture::wait_until_due(std::int64_t utime) {
     first_utime_ = utime;
     first_ns_ = due = now;
   }
-  while (!stopped() && monotonic_ns() < due)
+  while (!stopped() && monotonic_ns() < due) {
     sleep_until_ns(std::min(due, monotonic_ns() + std::int64_t{kPatienceMs} * 1'000'000));
+    beats_.fetch_add(1, std::memory_order_relaxed);
+  }
 }
 
 void Capture::note_fault(const std::string& fault) {

@@ -32,6 +32,8 @@ class Capture {
   [[nodiscard]] DeviceState device() const noexcept;
   /// Null where the source watches no device.
   [[nodiscard]] const DeviceMonitor* monitor() const noexcept { return source_.monitor(); }
+  /// Grows with every answer of the source: a frame, or, from a live one, that none has come yet.
+  [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
   /// The latest fault, in one line; empty when there was none. Copied without a heap call.
   void copy_fault(std::span<char> text) const noexcept;
   [[nodiscard]] std::string fault() const;
@@ -46,6 +48,7 @@ class Capture {
   const Settings settings_;
   std::atomic<bool> stop_{false};
   std::atomic<std::int64_t> bad_frames_{0};
+  std::atomic<std::uint64_t> beats_{0};
   std::atomic<DeviceState> device_{DeviceState::opening};
   mutable std::mutex mutex_;
   std::array<char, 256> fault_{};

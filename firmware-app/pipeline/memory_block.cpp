@@ -38,4 +38,12 @@ Result<MemoryBlock> MemoryBlock::allocate(std::size_t bytes) {
   return block;
 }
 
+std::string lock_memory() {
+  // On fault: what is never touched, such as the far ends of stacks, takes no memory.
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0) return "";
+  return fmt::format(
+      "memory is not locked ({}); run as root or raise the memlock limit (ulimit -l unlimited)",
+      std::strerror(errno));
+}
+
 }  // namespace pliant

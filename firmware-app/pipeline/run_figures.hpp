@@ -21,6 +21,7 @@ struct RunFigures {
   std::int64_t files_left_out = 0;  ///< frames whose files the disk had no time for
   TrackState last_state = TrackState::searching;
   std::int64_t first_tracked = -1;  ///< number of the first tracked frame
+  RigidTransform last_pose;         ///< of the base region in the latest tracked frame
   StageProfile profile;
   Histogram latency;   ///< capture to publish
   double seconds = 0;  ///< from the first frame's arrival to the last one's end
@@ -42,6 +43,10 @@ struct LiveFigures {
   std::atomic<std::int64_t> last_total_ns{0};
   std::atomic<float> confidence{0};
   std::atomic<int> regions{0};
+  std::atomic<std::int64_t> deadline_misses{0};
+  std::atomic<double> work_level{1};
+  /// Signs of life, see Beats; `captured` is written by the supervising thread.
+  std::atomic<std::uint64_t> captured{0}, begun{0}, finished{0};
 };
 
 }  // namespace pliant

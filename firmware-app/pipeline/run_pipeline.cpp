@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "core/memory/workspace.hpp"
 #include "firmware-app/measure/clock.hpp"
+#include "firmware-app/pipeline/memory_block.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
+#include "firmware-app/pipeline/touch_program.hpp"
 
 namespace pliant {
 
@@ -36,20 +40,48 @@ class SendWatch {
   std::optional<PathWatch> watch_;
 };
 
+/// How long a source may take to come back: when the program ends, and when it goes on with the same source.
+constexpr int kHangMs = 500, kHangBeforeReuseMs = 5000;
+
+/// What the capturing thread uses, in one place that can outlive the run.
+struct CaptureSide {
+  MemoryBlock memory;
+  FrameRing ring;
+  Capture capture;
+  Worker thread;  // the last: joined before the others go
+
+  CaptureSide(DepthSource& source, const Capture::Settings& settings, FrameRing::Policy policy,
+              MemoryBlock block)
+      : memory(std::move(block)),
+        ring(source.intrinsics(), policy, memory),
+        capture(source, ring, settings) {}
+  [[nodiscard]] static Result<std::unique_ptr<CaptureSide>> make(DepthSource& source,
+                                                                 const Capture::Settings& settings,
+                                                                 FrameRing::Policy policy) {
+    Result<MemoryBlock> block = FrameRing::allocate(source.intrinsics());
+    if (!block) return block.error();
+    return std::make_unique<CaptureSide>(source, settings, policy, std::move(*block));
+  }
+};
+
 void warn(const RunSettings& settings, const std::string& line) {
   if (settings.warn && !line.empty()) settings.warn(line);
 }
 
 /// Waits for the tracking thread, shows progress, passes a stop on, tells of a failed write as soon as it is
 /// known.
-void supervise(const RunSettings& settings, const LiveFigures& live, const std::atomic<bool>& done,
+void supervise(const RunSettings& settings, LiveFigures& live, const std::atomic<bool>& done,
                Capture& capture, FrameRing& ring, const FrameFiles* files, RunEnd& end) {
   while (!done.load(std::memory_order_acquire)) {
     sleep_until_ns(monotonic_ns() + 20'000'000);
-    if (!end.stopped && StopSignal::requested()) {
-      end.stopped = true;
-      capture.stop();
-      ring.abort();
+    live.captured.store(capture.beats(), std::memory_order_relaxed);
+    if (!end.stopped && !end.left) {
+      end.stopped = StopSignal::requested();
+      end.left = !end.stopped && settings.leave && settings.leave();
+      if (end.stopped || end.left) {
+        capture.stop();
+        ring.abort();
+      }
     }
     if (files != nullptr && !end.files_failed) {
       const std::string failure = files->failure();
@@ -68,18 +100,24 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
 
   RunEnd end;
   RunFigures& figures = end.figures;
-  figures.workspace_bytes = Tracker::workspace_bytes(model, camera, settings.track);
-  Result<MemoryBlock> workspace = MemoryBlock::allocate(figures.workspace_bytes);
+  const std::size_t workspace_bytes = Tracker::workspace_bytes(model, camera, settings.track);
+  figures.workspace_bytes = workspace_bytes;
+  Result<MemoryBlock> workspace = MemoryBlock::allocate(workspace_bytes);
   if (!workspace) return workspace.error();
   figures.workspace_locked = workspace->locked();
   Tracker tracker;
   if (const char* fault = tracker.start(model, camera, settings.sensor, settings.track, workspace->bytes());
       fault != nullptr)
     return Error{ErrorKind::bad_input, fmt::format("the tracker cannot start: {}", fault)};
+  if (settings.start_pose) tracker.start_from(*settings.start_pose);
 
-  Result<MemoryBlock> ring_memory = FrameRing::allocate(camera);
-  if (!ring_memory) return ring_memory.error();
-  FrameRing ring(camera, newest_wins ? FrameRing::Policy::newest : FrameRing::Policy::keep_all, *ring_memory);
+  Result<std::unique_ptr<CaptureSide>> made_capture = CaptureSide::make(
+      source, {.pace_by_stamps = settings.realtime && !source.live(), .frame_limit = settings.frame_limit},
+      newest_wins ? FrameRing::Policy::newest : FrameRing::Policy::keep_all);
+  if (!made_capture) return made_capture.error();
+  std::unique_ptr<CaptureSide> capture_side = std::move(*made_capture);
+  FrameRing& ring = capture_side->ring;
+  Capture& capture = capture_side->capture;
 
   std::unique_ptr<FrameFiles> files;
   if (!settings.files.trajectory.empty() || !settings.files.points.empty()) {
@@ -107,9 +145,6 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   if (publisher != nullptr) publisher->announce(model);
 
   LiveFigures live;
-  Capture capture(
-      source, ring,
-      {.pace_by_stamps = settings.realtime && !source.live(), .frame_limit = settings.frame_limit});
   TrackingLoop::Settings loop_settings;
   loop_settings.budget_ns = newest_wins ? static_cast<std::int64_t>(settings.budget_ms * 1e6) : 0;
   loop_settings.wait_for_publisher = !newest_wins;
@@ -125,7 +160,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
       loop_settings);
 
   std::atomic<bool> done{false};
-  Worker capture_thread, tracking_thread;
+  Worker tracking_thread;
   std::string warning;
   Outcome started = tracking_thread.start(
       {.name = "pliant-track", .priority = settings.priority, .affinity = settings.affinity},
@@ -136,8 +171,16 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
       warning);
   if (!started) return started.error();
   warn(settings, warning);
-  started = capture_thread.start(
-      {.name = "pliant-capture", .priority = 0, .affinity = {}}, [&capture] { capture.run(); }, warning);
+  static_cast<void>(touch_program());
+  if (settings.lock_memory) warn(settings, lock_memory());
+  // Above tracking: taking a frame from the device is short, and coming late to it loses frames.
+  warning.clear();
+  started = capture_side->thread.start(
+      {.name = "pliant-capture",
+       .priority = settings.priority > 0 ? std::min(settings.priority + 1, 99) : 0,
+       .affinity = {}},
+      [&capture] { capture.run(); }, warning);
+  warn(settings, warning);
   if (!started) {
     ring.close();
     return started.error();
@@ -147,7 +190,11 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   tracking_thread.join();
   capture.stop();
   ring.abort();
-  capture_thread.join();
+  if (!capture_side->thread.join_within(end.left ? kHangBeforeReuseMs : kHangMs)) {
+    // The thread still uses what is here: it stays until the process ends.
+    end.source_hangs = true;
+    static_cast<void>(capture_side.release());
+  }
   loop.publish_end(figures);
   if (publisher != nullptr) {
     static_cast<void>(publisher->flush(300));

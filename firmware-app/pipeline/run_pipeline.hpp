@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,14 @@ struct RunSettings {
   int priority = 0;               ///< of the tracking thread, see WorkerSettings
   std::vector<int> affinity;
   FrameFilesSettings files;
+  bool lock_memory = false;  ///< everything the process holds, not only the workspace
   bool hash = false;
+  std::optional<RigidTransform> start_pose;  ///< where the first frame looks for the object, camera <- model
   FrameWitness witness;
-  /// Called every 100 ms on the calling thread while the run goes on; may be empty.
+  /// Called every 20 ms on the calling thread while the run goes on; may be empty.
   std::function<void(const LiveFigures&)> progress;
+  /// Asked as often: true ends this run, the source stays open for another. May be empty.
+  std::function<bool()> leave;
   /// Called with a line that the user should read now; may be empty.
   std::function<void(const std::string&)> warn;
 };
@@ -39,7 +44,9 @@ struct RunSettings {
 /// How a run that could start ended.
 struct RunEnd {
   RunFigures figures;
-  bool stopped = false;  ///< by SIGINT or SIGTERM
+  bool stopped = false;       ///< by SIGINT or SIGTERM
+  bool left = false;          ///< because RunSettings::leave said so
+  bool source_hangs = false;  ///< it did not come back: the caller must end the process without closing it
   bool device_lost = false;
   std::string fault;          ///< the latest fault of the source, empty when there was none
   bool files_failed = false;  ///< a write failed; `warn` was told

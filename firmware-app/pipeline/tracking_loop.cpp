@@ -41,7 +41,9 @@ void TrackingLoop::run(RunFigures& figures) {
       continue;
     }
     if (first_arrival_ns_ == 0) first_arrival_ns_ = captured->arrival_ns;
+    parts_.live.begun.fetch_add(1, std::memory_order_relaxed);
     take(*captured, figures);
+    parts_.live.finished.fetch_add(1, std::memory_order_relaxed);
     end_ns = monotonic_ns();
     watch->update();
   }
@@ -79,6 +81,7 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   last_frame_ = captured.frame.number;
   const bool state_changed = figures.frames() == 0 || result.state != figures.last_state;
   figures.last_state = result.state;
+  if (tracked) figures.last_pose = result.pose;
   if (tracked && figures.first_tracked < 0) figures.first_tracked = captured.frame.number;
   ++(tracked ? figures.tracked : result.state == TrackState::lost ? figures.lost : figures.searching);
 
@@ -93,6 +96,8 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   parts_.live.state.store(result.state, std::memory_order_relaxed);
   parts_.live.last_total_ns.store(figures.profile.last_total(), std::memory_order_relaxed);
   parts_.live.confidence.store(result.confidence, std::memory_order_relaxed);
+  parts_.live.deadline_misses.store(work_.misses(), std::memory_order_relaxed);
+  parts_.live.work_level.store(work_.level(), std::memory_order_relaxed);
   parts_.live.regions.store(static_cast<int>(result.regions.size()), std::memory_order_relaxed);
 }
 

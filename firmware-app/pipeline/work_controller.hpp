@@ -27,6 +27,7 @@ class WorkController {
     return level_;
   }
   [[nodiscard]] std::int64_t misses() const noexcept { return misses_; }
+  [[nodiscard]] double level() const noexcept { return level_; }
   [[nodiscard]] double least_level() const noexcept { return least_; }
 
  private:

@@ -4,7 +4,9 @@
 #include <sched.h>
 
 #include <csignal>
+#include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <utility>
 
 namespace pliant {
@@ -54,6 +56,22 @@ Outcome Worker::start(const WorkerSettings& settings, std::function<void()> work
           fmt::format("cannot bind {} to the processors asked for: {}", settings.name, std::strerror(error));
   }
   return success();
+}
+
+bool Worker::join_within(int timeout_ms) {
+  if (!running_) return true;
+  timespec until{};
+  clock_gettime(CLOCK_REALTIME, &until);
+  const std::int64_t nanoseconds = until.tv_nsec + std::int64_t{timeout_ms} * 1'000'000;
+  until.tv_sec += static_cast<time_t>(nanoseconds / 1'000'000'000);
+  until.tv_nsec = static_cast<long>(nanoseconds % 1'000'000'000);
+  if (pthread_timedjoin_np(thread_, nullptr, &until) == 0) {
+    running_ = false;
+    return true;
+  }
+  pthread_detach(thread_);
+  running_ = false;
+  return false;
 }
 
 void Worker::join() {

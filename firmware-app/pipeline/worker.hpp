@@ -30,6 +30,9 @@ class Worker {
   [[nodiscard]] Outcome start(const WorkerSettings& settings, std::function<void()> work,
                               std::string& warning);
   void join();
+  /// False when the work is not at its end after `timeout_ms`; it then goes on by itself, and what it uses,
+  /// this object included, must stay for good.
+  [[nodiscard]] bool join_within(int timeout_ms);
 
  private:
   std::function<void()> work_;

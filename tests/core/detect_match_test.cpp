@@ -4,6 +4,7 @@
 
 #include "core/detect/descriptor_match.hpp"
 #include "core/detect/grouping.hpp"
+#include "core/simd/cpu.hpp"
 #include "tests/core/bumpy_object.hpp"
 
 namespace pliant {
@@ -48,7 +49,9 @@ std::vector<Body> bodies() {
     all.push_back({"avx512vnni", &dot_products_avx512vnni});
 #elif defined(__aarch64__)
   all.push_back({"neon", &dot_products_neon});
-  all.push_back({"automatic", dot_kernel(Kernels::automatic)});
+  if (cpu_features().dot_products) all.push_back({"dotprod", &dot_products_dotprod});
+#elif defined(__arm__)
+  if (cpu_features().neon) all.push_back({"neon", &dot_products_neon});
 #endif
   return all;
 }
@@ -79,6 +82,11 @@ TEST(DescriptorMatch, TheSettingChoosesABodyThatRunsHere) {
   for (const Kernels k : {Kernels::automatic, Kernels::scalar, Kernels::sse, Kernels::avx2, Kernels::neon})
     EXPECT_NE(dot_kernel(k), nullptr);
   EXPECT_EQ(dot_kernel(Kernels::scalar), &dot_products_scalar);
+#if defined(__aarch64__)
+  EXPECT_EQ(dot_kernel(Kernels::neon), &dot_products_neon);
+  EXPECT_EQ(dot_kernel(Kernels::automatic),
+            cpu_features().dot_products ? &dot_products_dotprod : &dot_products_neon);
+#endif
 }
 
 TEST(DescriptorMatch, FindsTheBestAndTheNextBest) {

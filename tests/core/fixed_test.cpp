@@ -58,8 +58,12 @@ TEST(PlaneMoments, AreExactInAnyOrder) {
   EXPECT_EQ(one.square, other.square);
   EXPECT_EQ(one.weight, other.weight);
   EXPECT_EQ(one.rows, 2000U);
-  // against wide arithmetic
+  // against wide arithmetic, where the compiler has it
+#ifdef __SIZEOF_INT128__
   __extension__ using Wide = __int128;
+#else
+  using Wide = std::int64_t;
+#endif
   std::size_t k = 0;
   for (std::size_t r = 0; r < 6; ++r)
     for (std::size_t c = r; c < 6; ++c) {

@@ -15,18 +15,7 @@ while [ $# -gt 0 ] && [ "$1" != -- ]; do builds+=("$1"); shift; done
 [ $# -ge 2 ] || die "name a source behind --"
 shift
 
-# launch PROGRAM: sets `runner` and `kernels` for its architecture.
-launch() {
-  local sysroot machine
-  machine=$(od -An -tu2 -j18 -N2 "$1" | tr -d ' ')
-  sysroot=$(sed -n 's/^PLIANT_SYSROOT:PATH=//p' "$2/CMakeCache.txt")
-  case $machine in
-    62) runner=(env) kernels=(scalar sse avx2 auto) ;;
-    183) runner=(qemu-aarch64 -L "$sysroot") kernels=(scalar neon auto) ;;
-    40) runner=(qemu-arm -L "$sysroot") kernels=(scalar neon auto) ;;
-    *) die "$1 is of an unknown architecture" ;;
-  esac
-}
+. "$(dirname "${BASH_SOURCE[0]}")/launch.sh"
 
 failed=0
 for source in "$@"; do

@@ -15,7 +15,7 @@ shift 2
 here=$(dirname "${BASH_SOURCE[0]}")
 program=$build/tests/cross/replay_frames
 [ -x "$program" ] || die "$program is not built"
-sysroot=$(sed -n 's/^PLIANT_SYSROOT:PATH=//p' "$build/CMakeCache.txt")
+sysroot=$(sed -n 's/^PLIANT_SYSROOT:[A-Z]*=//p' "$build/CMakeCache.txt")
 command -v qemu-aarch64 >/dev/null || die "no qemu-aarch64; install it: sudo apt install qemu-user"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

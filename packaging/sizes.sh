@@ -1,0 +1,59 @@
+#!/bin/bash
+# packaging/sizes.sh [ARCH...]
+# A table of what the packages in build/packages/ARCH take: the stripped program, the package's files, what the program
+# is linked with, and the time from its start to the first published status (median of five; a recording and a model
+# file at hand; foreign programs under emulation, which is many times slower than the board).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export LC_ALL=C
+die() { printf 'sizes: %s\n' "$*" >&2; exit 2; }
+architectures=("$@")
+[ $# -gt 0 ] || for folder in build/packages/*/; do architectures+=("$(basename "$folder")"); done
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+# first_status LOG START: milliseconds from START (seconds since the epoch) to the first status in an LCM log, which has
+# for every event a magic number, event number, time in microseconds, two lengths, channel, data.
+first_status() {
+  local at=0 size length data time
+  size=$(stat -c %s "$1")
+  while [ "$at" -lt "$size" ]; do
+    read -r time length data < <(od -An -v -tu1 -j"$at" -N28 "$1" | tr -s ' \n' ' ' | awk '
+      { for (i = 13; i <= 20; ++i) time = time * 256 + $i; for (i = 21; i <= 24; ++i) length_ = length_ * 256 + $i
+        for (i = 25; i <= 28; ++i) data = data * 256 + $i; printf "%.0f %d %d\n", time, length_, data }')
+    if [ "$(tail -c +$((at + 29)) "$1" | head -c "$length")" = PLIANT_STATUS ]; then
+      awk -v time="$time" -v start="$2" 'BEGIN { printf "%.0f", time / 1000 - start * 1000 }'
+      return
+    fi
+    at=$((at + 28 + length + data))
+  done
+  die "no status was published"
+}
+
+printf '%-6s %12s %14s %13s  %s\n' "" "program, kB" "installed, kB" "to status, ms" "linked with"
+for arch in "${architectures[@]}"; do
+  package=$(echo build/packages/"$arch"/pliant_*_"$arch".deb)
+  [ -f "$package" ] || die "no package for $arch; make it: ./dev package $arch"
+  root=$scratch/$arch
+  dpkg-deb -x "$package" "$root"
+  runner=()
+  if [ "$arch" != "$(dpkg --print-architecture)" ]; then
+    case $arch in arm64) runner=(qemu-aarch64) ;; armhf) runner=(qemu-arm) ;; esac
+    runner+=(-L "build/sysroot/$arch")
+  fi
+  program=$root/usr/bin/pliant
+  if [ ! -d "$scratch/recording" ]; then
+    "${runner[@]}" "$program" record --source simulated:cushion --frames 3 -o "$scratch/recording" >/dev/null
+    "${runner[@]}" "$program" model build "$scratch/recording/model.ply" -o "$scratch/model" >/dev/null
+  fi
+  times=()
+  for _ in 1 2 3 4 5; do
+    start=$(date +%s.%N)
+    "${runner[@]}" "$program" run --source "recording:$scratch/recording" --model "$scratch/model" \
+      --lcm-url "file://$scratch/log?mode=w" >/dev/null 2>&1 || true
+    times+=("$(first_status "$scratch/log" "$start")")
+  done
+  time=$(printf '%s\n' "${times[@]}" | sort -n | sed -n 3p)
+  printf '%-6s %12s %14s %13s  %s\n' "$arch" "$(($(stat -c %s "$program") / 1000))" "$(dpkg-deb -f "$package" Installed-Size)" \
+    "$time" "$(dpkg-deb -f "$package" Depends | sed 's/ ([^)]*)//g')"
+done

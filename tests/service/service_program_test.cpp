@@ -1,0 +1,118 @@
+// The program under a service manager: ready, pings, reload, end.
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "tests/commands/program.hpp"
+#include "tests/service/fake_manager.hpp"
+
+namespace pliant::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Service : public CommandTest {
+ protected:
+  Service() : manager_(at("notify")) {}
+  ~Service() override {
+    if (process_ > 0) kill(process_, SIGKILL);
+  }
+
+  void start(const std::vector<std::string>& options) {
+    std::vector<std::string> words = {"run"};
+    words.insert(words.end(), options.begin(), options.end());
+    setenv("NOTIFY_SOCKET", manager_.path().c_str(), 1);
+    setenv("WATCHDOG_USEC", "400000", 1);
+    process_ = start_pliant(words, folder_);
+    unsetenv("NOTIFY_SOCKET");
+    unsetenv("WATCHDOG_USEC");
+  }
+  void write_config(const std::string& text) const {
+    write_file(
+        at("c.toml"),
+        "source = \"simulated:box?frames=100000&width=160&height=120\"\n[lcm]\nurl = \"none\"\n" + text);
+  }
+  /// Ends the program by SIGTERM; the seconds that it took.
+  double end(Ended& ended) {
+    const auto before = std::chrono::steady_clock::now();
+    kill(process_, SIGTERM);
+    ended = wait_for(process_, folder_);
+    process_ = -1;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  }
+
+  FakeManager manager_;
+  pid_t process_ = -1;
+};
+
+TEST_F(Service, IsReadyPingsAndEndsWithinASecond) {
+  write_config("");
+  start({"--config", at("c.toml"), "--pace", "realtime"});
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  EXPECT_TRUE(manager_.hears("STATUS=frame ", 3000));
+  EXPECT_GE(manager_.count("WATCHDOG=1", 1500), 5);
+  Ended ended;
+  EXPECT_LT(end(ended), 1.0);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_TRUE(manager_.hears("STOPPING=1\nSTATUS=ended after ", 1000));
+}
+
+TEST_F(Service, PingsStopWhenFramesStopAndItStillEndsWithinASecond) {
+  const std::string recording = small_recording(6), model = box_model();
+  // A frame that never comes: opening it waits for a writer, for ever.
+  fs::remove(recording + "/depth/000003.png");
+  ASSERT_EQ(mkfifo((recording + "/depth/000003.png").c_str(), 0600), 0);
+  start({"--source", "recording:" + recording, "--model", model, "--lcm-url", "none"});
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(manager_.hears("STATUS=frame 3/6", 10'000));
+  static_cast<void>(manager_.count("WATCHDOG=1", 500));  // the last ones
+  EXPECT_EQ(manager_.count("WATCHDOG=1", 1500), 0);
+  Ended ended;
+  EXPECT_LT(end(ended), 1.0);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+}
+
+TEST_F(Service, AValidConfigIsTakenUpWithoutLosingTheObject) {
+  write_config("[track]\nbudget_ms = 33\n");
+  start({"--config", at("c.toml"), "--pace", "realtime"});
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(manager_.hears("  tracking", 20'000));
+  write_config("[track]\nbudget_ms = 50\n");
+  kill(process_, SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1", 3000));
+  ASSERT_TRUE(manager_.hears("READY=1", 10'000));
+  // The very first frames of the new run are tracked: none is spent on searching.
+  std::string line;
+  for (int i = 0; i < 200 && line.find("STATUS=frame ") == std::string::npos; ++i)
+    line = manager_.receive(50);
+  EXPECT_NE(line.find("  tracking"), std::string::npos) << line;
+  Ended ended;
+  EXPECT_LT(end(ended), 1.0);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("config read again: track.budget_ms"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.out.find("lost 0, searching 0"), std::string::npos) << ended.out;
+}
+
+TEST_F(Service, AWrongConfigIsRefusedAndTheOldOneStays) {
+  write_config("");
+  start({"--config", at("c.toml"), "--pace", "realtime"});
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  write_config("[track]\nbudget = 50\n");
+  kill(process_, SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1", 3000));
+  ASSERT_TRUE(manager_.hears("READY=1", 10'000));
+  EXPECT_GE(manager_.count("WATCHDOG=1", 1000), 3);
+  Ended ended;
+  EXPECT_LT(end(ended), 1.0);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("the old config stays: "), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("c.toml:5:"), std::string::npos) << ended.err;
+  EXPECT_NE(ended.err.find("budget_ms"), std::string::npos) << ended.err;
+}
+
+}  // namespace
+}  // namespace pliant::test
