@@ -43,7 +43,7 @@ mkdir -p "$dir"
 mkdir -p "$dir/.shlibs"
 for package in "$scratch"/cache/archives/*.deb; do
   dpkg -x "$package" "$dir"
-  # Which package to depend on for which library: packaging/dependencies.sh reads it.
+  # Which package to depend on for which library: toolchains/packaging/dependencies.sh reads it.
   dpkg -I "$package" shlibs >"$dir/.shlibs/$(basename "$package").shlibs" 2>/dev/null || true
 done
 # Links to absolute places would lead out of the sysroot.

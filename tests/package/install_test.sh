@@ -33,7 +33,7 @@ case $(dpkg-deb -f "$program_package" Depends) in
   *liblcm1*libstdc++6*) ;;
   *) die "the program's dependencies are not told" ;;
 esac
-for script in "$here"/packaging/debian/{postinst,prerm,postrm}; do
+for script in "$here"/toolchains/packaging/debian/{postinst,prerm,postrm}; do
   sh -n "$script" || die "$script is no shell script"
 done
 

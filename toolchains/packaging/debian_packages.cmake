@@ -1,4 +1,4 @@
-# Debian packages by CPack, one a component. packaging/package.sh sets PLIANT_DEB_ARCHITECTURE and PLIANT_DEB_DEPENDS
+# Debian packages by CPack, one a component. toolchains/packaging/package.sh sets PLIANT_DEB_ARCHITECTURE and PLIANT_DEB_DEPENDS
 # (what the program is linked with), and adds what is common to all.
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)

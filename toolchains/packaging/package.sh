@@ -1,9 +1,9 @@
 #!/bin/bash
-# packaging/package.sh [amd64|arm64|armhf] [OUTPUT]
+# toolchains/packaging/package.sh [amd64|arm64|armhf] [OUTPUT]
 # Builds the Debian packages pliant, libpliant-dev and pliant-lcmtypes into OUTPUT (build/packages/ARCH), the same
 # bytes every time from the same sources. Without an architecture, for this machine.
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export LC_ALL=C.UTF-8 TZ=UTC
 umask 022
 
@@ -32,11 +32,11 @@ output=${2:-build/packages/$arch}
 mkdir -p build "$output"
 output=$(cd "$output" && pwd)
 # Every time stamp in the packages is that of the change log's newest entry.
-SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -l packaging/debian/changelog -S Timestamp)
+SOURCE_DATE_EPOCH=$(dpkg-parsechangelog -l toolchains/packaging/debian/changelog -S Timestamp)
 export SOURCE_DATE_EPOCH
-[ "$(dpkg-parsechangelog -l packaging/debian/changelog -S Version)" = \
+[ "$(dpkg-parsechangelog -l toolchains/packaging/debian/changelog -S Version)" = \
   "$(sed -n 's/^project(Pliant VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)" ] ||
-  die "packaging/debian/changelog and CMakeLists.txt name different versions"
+  die "toolchains/packaging/debian/changelog and CMakeLists.txt name different versions"
 
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 options+=(-DCMAKE_INSTALL_PREFIX=/usr "-DCMAKE_INSTALL_LIBDIR=lib/$triplet" "-DPLIANT_DEB_ARCHITECTURE=$arch"
@@ -50,7 +50,7 @@ say "building $preset"
 targets=(pliant pliant_lcm_package)
 grep -q '^PLIANT_LCM_JAR:.*=/' "build/$preset/CMakeCache.txt" && targets+=(pliant_lcm_jar)
 cmake --build "build/$preset" -j "$(nproc)" --target "${targets[@]}"
-depends=$(packaging/dependencies.sh "build/$preset/firmware-app/pliant" ${sysroot:+"$sysroot"})
+depends=$(toolchains/packaging/dependencies.sh "build/$preset/firmware-app/pliant" ${sysroot:+"$sysroot"})
 configure "-DPLIANT_DEB_DEPENDS=$depends"
 
 say "packing for $arch"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# packaging/make_jar.sh LCM_GEN JAVAC JAR LCM_JAR OUTPUT TYPE.lcm...
+# toolchains/packaging/make_jar.sh LCM_GEN JAVAC JAR LCM_JAR OUTPUT TYPE.lcm...
 # Java classes of the message types as one jar; the same bytes every time.
 set -euo pipefail
 generator=$1 compiler=$2 jar=$3 lcm=$4 output=$5

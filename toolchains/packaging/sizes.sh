@@ -1,10 +1,10 @@
 #!/bin/bash
-# packaging/sizes.sh [ARCH...]
+# toolchains/packaging/sizes.sh [ARCH...]
 # A table of what the packages in build/packages/ARCH take: the stripped program, the package's files, what the program
 # is linked with, and the time from its start to the first published status (median of five; a recording and a model
 # file at hand; foreign programs under emulation, which is many times slower than the board).
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export LC_ALL=C
 die() { printf 'sizes: %s\n' "$*" >&2; exit 2; }
 architectures=("$@")

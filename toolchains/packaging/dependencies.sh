@@ -1,5 +1,5 @@
 #!/bin/bash
-# packaging/dependencies.sh PROGRAM [SYSROOT]
+# toolchains/packaging/dependencies.sh PROGRAM [SYSROOT]
 # The packages that PROGRAM's shared libraries come from, as a Depends line, by the same rules as dpkg-shlibdeps
 # (which knows only packages that are installed here): every library's package states in its "shlibs" file which
 # package to depend on. SYSROOT is one that toolchains/make_sysroot.sh made; without it, this machine's packages.
