@@ -1,6 +1,7 @@
 // Every kind of damage to a model image: refused with its own word, never a crash.
 #include <cstring>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 
 #include "drivers/model_files/model_image.hpp"
@@ -102,9 +103,9 @@ TEST(ModelDamage, OffsetsThatLeadElsewhere) {
   for (const auto offset :
        {&ModelHeader::positions_offset, &ModelHeader::normals_offset, &ModelHeader::neighbours_offset,
         &ModelHeader::descriptors_offset, &ModelHeader::frames_offset})
-    for (const std::uint64_t wrong : {std::uint64_t{0}, std::uint64_t{64}, std::uint64_t{257},
-                                      good_image().size() - 64, good_image().size(), good_image().size() + 64,
-                                      std::uint64_t{1} << 63, std::numeric_limits<std::uint64_t>::max() - 63})
+    for (const std::uint64_t wrong : std::initializer_list<std::uint64_t>{
+             0, 64, 257, good_image().size() - 64, good_image().size(), good_image().size() + 64,
+             std::uint64_t{1} << 63, std::numeric_limits<std::uint64_t>::max() - 63})
       EXPECT_EQ(with_header([&](ModelHeader& h) { h.*offset = wrong; }), ModelFault::corrupt) << wrong;
 }
 
