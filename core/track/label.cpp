@@ -129,9 +129,11 @@ IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) no
     return {w.x + ((n.x * off + 8192) >> 14), w.y + ((n.y * off + 8192) >> 14),
             w.z + ((n.z * off + 8192) >> 14)};
   }
-  const std::int32_t share = std::min(verdict.distance, limit);  // of limit: small differences are noise
-  return {r.x + (w.x - r.x) * share / limit, r.y + (w.y - r.y) * share / limit,
-          r.z + (w.z - r.z) * share / limit};
+  // small differences are noise; a rigid point stays within the limit
+  const std::int32_t whole = label >= 0 ? std::max(verdict.distance, limit) : limit;
+  const std::int32_t share = std::min(verdict.distance, limit);
+  return {r.x + (w.x - r.x) * share / whole, r.y + (w.y - r.y) * share / whole,
+          r.z + (w.z - r.z) * share / whole};
 }
 
 }  // namespace
