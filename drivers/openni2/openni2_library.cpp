@@ -1,8 +1,11 @@
 #include "drivers/openni2/openni2_library.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <link.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "drivers/common/printable.hpp"
@@ -59,9 +62,28 @@ Result<std::shared_ptr<OpenNi2Library>> OpenNi2Library::start(std::shared_ptr<Ar
   return library;
 }
 
+namespace {
+
+/// libOniFile ends its playing thread by cancelling it, and OpenNI2's shutdown then unloads the code that the
+/// thread still unwinds through. So it stays loaded.
+void keep_file_player_loaded() {
+  const auto keep = [](dl_phdr_info* info, std::size_t /*size*/, void* /*unused*/) {
+    if (info->dlpi_name != nullptr &&
+        std::string_view(info->dlpi_name).find("libOniFile") != std::string_view::npos)
+      static_cast<void>(dlopen(info->dlpi_name, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE));
+    return 0;
+  };
+  dl_iterate_phdr(keep, nullptr);
+}
+
+}  // namespace
+
 OpenNi2Library::~OpenNi2Library() {
   if (callbacks_ != nullptr) api_.unregister_callbacks(callbacks_);
-  if (started_) api_.shutdown();
+  if (started_) {
+    keep_file_player_loaded();
+    api_.shutdown();
+  }
 }
 
 Result<std::vector<OpenNi2Device>> OpenNi2Library::devices() const {
