@@ -114,12 +114,29 @@ bool adjacent(const RegroupContext& context, std::int8_t a, std::int8_t b) noexc
   return false;
 }
 
-/// Two regions become one when one motion suits both; the lower id stays. A region that lost its points goes,
-/// too.
+/// Does the region hang on no other any more? Somewhere along its borders a part stays within a patch's width
+/// of what it is joined to, however it turns; a region that does not has lost its way.
+bool torn_off(const RegroupContext& context, const RegionSet& regions, std::int8_t k) noexcept {
+  bool any = false;
+  for (std::size_t b = 0; b < context.patches.border_count; ++b) {
+    const PatchBorder& border = context.patches.borders[b];
+    const std::int8_t x = context.warp.home[border.a], y = context.warp.home[border.b];
+    if (x == y || (x != k && y != k)) continue;
+    any = true;
+    const Vector3 gap = regions[static_cast<std::size_t>(x)].pose * border.centre -
+                        regions[static_cast<std::size_t>(y)].pose * border.centre;
+    if (gap.squaredNorm() <= 4 * context.patches.radius * context.patches.radius) return false;
+  }
+  return any;
+}
+
+/// Two regions become one when one motion suits both; the lower id stays. A region that lost its points or
+/// was torn off goes, too.
 bool merge(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
            RegionSet& regions, PointState& points) noexcept {
   for (std::size_t k = 1; k < regions.size(); ++k)
-    if (regions[k].alive && regions[k].members < settings.fewest_points / 2) {
+    if (regions[k].alive && (regions[k].members < settings.fewest_points / 2 ||
+                             torn_off(context, regions, static_cast<std::int8_t>(k)))) {
       dissolve(context, state, regions, points, k, regions[k].parent);
       return true;
     }

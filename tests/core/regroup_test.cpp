@@ -165,5 +165,14 @@ TEST_F(Hinge, TheLargestBodyBecomesTheBaseWhenItHasShrunk) {
   EXPECT_EQ(scene().regions[2].parent, 0);
 }
 
+TEST_F(Hinge, DissolvesARegionThatTearsOff) {
+  bend_to(0, 0.4);
+  ASSERT_EQ(alive(), 2);
+  scene().regions[1].pose.translation.z() -= 0.15;
+  (void)frame_at(0.4);
+  EXPECT_EQ(alive(), 1);
+  for (const std::int8_t home : scene().points.home) ASSERT_EQ(home, 0);
+}
+
 }  // namespace
 }  // namespace pliant
