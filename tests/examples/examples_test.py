@@ -131,9 +131,15 @@ class Examples(unittest.TestCase):
         for file in sorted((self.folder / "points").iterdir())[-12:]:
             expected = {(round(camera["fx"] * p[0] / p[2] + camera["cx"]), round(camera["fy"] * p[1] / p[2] + camera["cy"]))
                         for p in self.points(int(file.stem)) if p[6] != -2 and p[2] > 0}
-            best = max(best, len(drawn & expected) / max(1, len(drawn | expected)))
-        # Rounding to whole pixels differs for some.
+            best = max(best, min(share_near(drawn, expected), share_near(expected, drawn)))
+        # Subscribers put rigid points where their region puts them; files say a little more of how it bends.
         self.assertGreater(best, 0.93)
+
+
+def share_near(pixels, others):
+    """The share of pixels that are at most one beside one of the others."""
+    near = {(u + du, v + dv) for u, v in others for du in (-1, 0, 1) for dv in (-1, 0, 1)}
+    return len(pixels & near) / max(1, len(pixels))
 
 
 if __name__ == "__main__":
