@@ -127,13 +127,29 @@ class Examples(unittest.TestCase):
         # The picture is that of one of the last frames: its pixels are those of the observed points there.
         camera = {key: float(value) for key, value in camera_of(self.folder / "recording").items()
                   if key in ("fx", "fy", "cx", "cy")}
+        lines = (self.folder / "path.txt").read_text().splitlines()
+        poses = [[float(word) for word in line.split()[1:]] for line in lines]
+
+        def pixel(p):
+            return round(camera["fx"] * p[0] / p[2] + camera["cx"]), round(camera["fy"] * p[1] / p[2] + camera["cy"])
+
         best = 0
-        for file in sorted((self.folder / "points").iterdir())[-12:]:
-            expected = {(round(camera["fx"] * p[0] / p[2] + camera["cx"]), round(camera["fy"] * p[1] / p[2] + camera["cy"]))
-                        for p in self.points(int(file.stem)) if p[6] != -2 and p[2] > 0}
-            best = max(best, min(share_near(drawn, expected), share_near(expected, drawn)))
-        # Subscribers put rigid points where their region puts them; files say a little more of how it bends.
+        files = sorted((self.folder / "points").iterdir())
+        self.assertEqual(len(files), len(poses))
+        for file, pose in list(zip(files, poses))[-12:]:
+            seen = [p for p in self.points(int(file.stem)) if p[6] != -2 and p[2] > 0]
+            # Points of the base stand exactly where its pose puts them; of what bends the files know a little more.
+            base = {pixel(moved(pose, p[3:6])) for p in seen if p[6] == 0}
+            all_of_them = {pixel(p) for p in seen} | base
+            best = max(best, min(len(drawn & base) / max(1, len(base)), share_near(drawn, all_of_them)))
         self.assertGreater(best, 0.93)
+
+
+def moved(pose, point):
+    tx, ty, tz, qx, qy, qz, qw = pose
+    x, y, z = point
+    cx, cy, cz = qy * z - qz * y + qw * x, qz * x - qx * z + qw * y, qx * y - qy * x + qw * z
+    return (x + 2 * (qy * cz - qz * cy) + tx, y + 2 * (qz * cx - qx * cz) + ty, z + 2 * (qx * cy - qy * cx) + tz)
 
 
 def share_near(pixels, others):
