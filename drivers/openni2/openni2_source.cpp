@@ -1,9 +1,9 @@
 // A live device.
 #include <fmt/format.h>
 
-#include <ctime>
 #include <utility>
 
+#include "drivers/common/clock.hpp"
 #include "drivers/depth_source/device_clock.hpp"
 #include "drivers/openni2/openni2.hpp"
 #include "drivers/openni2/openni2_stream.hpp"
@@ -11,12 +11,6 @@
 namespace pliant {
 
 namespace {
-
-std::int64_t microseconds(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1000;
-}
 
 class OpenNi2Source final : public DepthSource {
  public:

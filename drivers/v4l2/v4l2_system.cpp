@@ -7,18 +7,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <ctime>
 #include <filesystem>
+
+#include "drivers/common/clock.hpp"
 
 namespace pliant {
 
 namespace {
-
-std::int64_t microseconds(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1000;
-}
 
 class Kernel final : public V4l2System {
  public:

@@ -3,83 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/registration/cloud_registration.hpp"
-#include "drivers/geometry_files/geometry.hpp"
 #include "drivers/images/png.hpp"
-#include "drivers/model_files/model_builder.hpp"
 #include "drivers/recording/camera_file.hpp"
+#include "tests/accuracy/registration_runs.hpp"
 
 namespace pliant {
 namespace {
 
 const std::filesystem::path kData = PLIANT_SHARED_DATA;
-
-/// A block aligned for a Workspace.
-struct Block {
-  explicit Block(std::size_t size) : raw(size + Workspace::kAlignment) {
-    void* at = raw.data();
-    std::size_t space = raw.size();
-    std::align(Workspace::kAlignment, size, at, space);
-    bytes = {static_cast<std::byte*>(at), size};
-  }
-  std::vector<std::byte> raw;
-  std::span<std::byte> bytes;
-};
-
-struct Model {
-  explicit Model(const std::filesystem::path& file) : block(0) {
-    const Result<Geometry> geometry = read_geometry(file);
-    if (!geometry) return;
-    const Result<BuiltModel> built = build_model(*geometry, ModelBuildSettings());
-    if (!built) return;
-    block = Block(built->image.size());
-    std::memcpy(block.bytes.data(), built->image.data(), built->image.size());
-    good = ModelView::open(block.bytes, view) == ModelFault::none;
-  }
-  Block block;
-  ModelView view;
-  bool good = false;
-};
-
-struct Registering {
-  Registering(const Model& model, std::size_t points, const RegistrationSettings& settings = {})
-      : block(CloudRegistration::workspace_bytes(model.view, points, settings)) {
-    EXPECT_EQ(registration.start(model.view, points, settings, block.bytes), nullptr);
-  }
-  Block block;
-  CloudRegistration registration;
-};
-
-/// The parts' true poses (scene <- model).
-std::vector<RigidTransform> true_poses(const std::filesystem::path& file) {
-  std::vector<RigidTransform> poses;
-  std::ifstream in(file);
-  std::string word;
-  while (in >> word) {
-    if (word != "part") continue;
-    in >> word;  // its name
-    RigidTransform pose;
-    double last[4];
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) in >> pose.rotation(i, j);
-      in >> pose.translation(i);
-    }
-    for (double& x : last) in >> x;
-    poses.push_back(pose);
-  }
-  return poses;
-}
-
-double degrees(const Matrix3& a, const Matrix3& b) {
-  return std::acos(std::clamp(cos_angle(a.transpose() * b), -1.0, 1.0)) * 180 / M_PI;
-}
 
 struct Case {
   const char* folder;
@@ -88,27 +23,33 @@ struct Case {
   std::size_t regions;
 };
 
+/// Names the case where a test is listed.
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.folder << '/' << c.scene;
+}
+
 class RegistrationCase : public ::testing::TestWithParam<Case> {};
 
 TEST_P(RegistrationCase, EveryRegionHasATruePartsPose) {
   const Case& c = GetParam();
   const std::filesystem::path folder = kData / "cases" / c.folder;
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data at " << folder;
-  const Model model(folder / "model.ply");
+  const BuiltFromFile model(folder / "model.ply");
   ASSERT_TRUE(model.good);
   const Result<Geometry> scene = read_geometry(folder / c.scene);
   ASSERT_TRUE(scene);
-  Registering run(model, scene->vertices.size());
+  ReadyRegistration run(model.view, scene->vertices.size());
+  ASSERT_EQ(run.fault, nullptr);
   const RegistrationResult& result = run.registration.register_cloud(scene->vertices);
   ASSERT_EQ(result.outcome, RegistrationOutcome::found);
-  const std::vector<RigidTransform> truth = true_poses(folder / "gt_pose.txt");
+  const std::vector<RigidTransform> truth = read_true_poses(folder / "gt_pose.txt");
   ASSERT_FALSE(truth.empty());
   EXPECT_EQ(result.instances[0].regions.size(), c.regions);
   for (const RegionResult& region : result.instances[0].regions) {
     double best = 1e9, off = 1e9;
     for (const RigidTransform& pose : truth)
-      if (degrees(pose.rotation, region.transform.rotation) < best) {
-        best = degrees(pose.rotation, region.transform.rotation);
+      if (degrees_between(pose.rotation, region.transform.rotation) < best) {
+        best = degrees_between(pose.rotation, region.transform.rotation);
         off = (pose * model.view.centre() - region.transform * model.view.centre()).norm();
       }
     EXPECT_LT(best, c.most_degrees) << static_cast<int>(region.id);
@@ -128,12 +69,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(RegistrationCases, AnAbsentObjectIsNotFound) {
   const std::filesystem::path cases = kData / "cases";
   if (!std::filesystem::exists(cases)) GTEST_SKIP() << "no shared data at " << cases;
-  const Model figure(cases / "c_humanoid" / "model.ply"), pillow(cases / "d1_pillow" / "model.ply");
+  const BuiltFromFile figure(cases / "c_humanoid" / "model.ply"), pillow(cases / "d1_pillow" / "model.ply");
   ASSERT_TRUE(figure.good && pillow.good);
-  const auto outcome = [&](const Model& model, const char* scene) {
+  const auto outcome = [&](const BuiltFromFile& model, const char* scene) {
     const Result<Geometry> cloud = read_geometry(cases / scene);
     EXPECT_TRUE(cloud);
-    Registering run(model, cloud->vertices.size());
+    ReadyRegistration run(model.view, cloud->vertices.size());
+    EXPECT_EQ(run.fault, nullptr);
     return run.registration.register_cloud(cloud->vertices).outcome;
   };
   EXPECT_EQ(outcome(figure, "d2_pillow_clutter/scene.ply"), RegistrationOutcome::not_found);
@@ -148,9 +90,10 @@ TEST(RegistrationScenes, TheMilkCartonIsTheMiddleObject) {
   const Result<Geometry> scene = read_geometry(folder / "milk_cartoon_all_small_clorox.pcd");
   ASSERT_TRUE(scene);
   for (const char* name : {"milk.pcd", "milk_color.pcd"}) {
-    const Model model(folder / name);
+    const BuiltFromFile model(folder / name);
     ASSERT_TRUE(model.good) << name;
-    Registering run(model, scene->vertices.size());
+    ReadyRegistration run(model.view, scene->vertices.size());
+    ASSERT_EQ(run.fault, nullptr);
     const RegistrationResult& result = run.registration.register_cloud(scene->vertices);
     ASSERT_EQ(result.outcome, RegistrationOutcome::found) << name;
     // Between the two bottles, on the picture's middle line and below it.
@@ -163,12 +106,13 @@ TEST(RegistrationScenes, TheMilkCartonIsTheMiddleObject) {
 TEST(RegistrationScenes, ThePlushIsFoundInSinglePictures) {
   const std::filesystem::path folder = kData / "real_plush_squirrel";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data at " << folder;
-  const Model model(folder / "model.ply");
+  const BuiltFromFile model(folder / "model.ply");
   ASSERT_TRUE(model.good);
   const Result<CameraFile> camera = read_camera(folder / "camera.toml");
   ASSERT_TRUE(camera);
   const Intrinsics& c = camera->intrinsics;
-  Registering run(model, static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height));
+  ReadyRegistration run(model.view, static_cast<std::size_t>(c.width) * static_cast<std::size_t>(c.height));
+  ASSERT_EQ(run.fault, nullptr);
   for (const char* name : {"000000.png", "000100.png", "000380.png"}) {
     GreyImage16 picture;
     ASSERT_TRUE(PngReader().read(folder / "depth" / name, picture)) << name;
