@@ -46,9 +46,9 @@ class OpenNi2Source final : public DepthSource {
       case OpenNi2Stream::Got::frame: {
         item.event = SourceEvent::frame;
         // The device's clock runs evenly, as our monotonic one does; the wall clock may be set at any time.
-        const std::int64_t arrival = microseconds(CLOCK_MONOTONIC);
+        const std::int64_t arrival = clock_us(CLOCK_MONOTONIC);
         const std::int64_t captured = clock_.to_ours(item.frame.utime, arrival);
-        item.frame.utime = captured + microseconds(CLOCK_REALTIME) - arrival;
+        item.frame.utime = captured + clock_us(CLOCK_REALTIME) - arrival;
         break;
       }
       case OpenNi2Stream::Got::unfit:

@@ -49,8 +49,8 @@ class Kernel final : public V4l2System {
     events = waiting.revents;
     return ready;
   }
-  std::int64_t monotonic_us() override { return microseconds(CLOCK_MONOTONIC); }
-  std::int64_t wall_us() override { return microseconds(CLOCK_REALTIME); }
+  std::int64_t monotonic_us() override { return clock_us(CLOCK_MONOTONIC); }
+  std::int64_t wall_us() override { return clock_us(CLOCK_REALTIME); }
 };
 
 }  // namespace

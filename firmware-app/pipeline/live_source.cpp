@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <utility>
 
+#include "drivers/common/clock.hpp"
 #include "firmware-app/measure/clock.hpp"
 
 namespace pliant {
@@ -17,12 +17,6 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 
 std::int64_t nanoseconds(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
-}
-
-std::int64_t wall_clock_us() {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1000;
 }
 
 std::string fault_text(StreamFault fault, const DepthFrame& frame, const Intrinsics& camera) {
@@ -141,7 +135,7 @@ void LiveSource::take(SourceItem& item, std::int64_t now) {
   monitor_.set_state(DeviceState::streaming);
   StreamFault fault = StreamFault::broken;
   if (item.event == SourceEvent::frame) {
-    fault = judge_.judge(item.frame, now, wall_clock_us());
+    fault = judge_.judge(item.frame, now, clock_us(CLOCK_REALTIME));
   }
   monitor_.judged(fault);
   if (fault == StreamFault::none || fault == StreamFault::slow) {

@@ -1,9 +1,9 @@
 #include "firmware-app/pipeline/tracking_loop.hpp"
 
 #include <array>
-#include <ctime>
 #include <optional>
 
+#include "drivers/common/clock.hpp"
 #include "firmware-app/measure/clock.hpp"
 
 namespace pliant {
@@ -15,12 +15,6 @@ constexpr int kIdleMs = 20;  // how late a change of the device's state may be t
 
 std::int32_t microseconds(std::int64_t nanoseconds) {
   return static_cast<std::int32_t>((nanoseconds + 500) / 1000);
-}
-
-std::int64_t wall_clock_us() {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000 + now.tv_nsec / 1000;
 }
 
 }  // namespace
@@ -148,7 +142,7 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   const double seconds = static_cast<double>(now - last_status_ns_) * 1e-9;
 
   StatusContent status;
-  status.utime = wall_clock_us();
+  status.utime = clock_us(CLOCK_REALTIME);
   status.version = settings_.version;
   status.source = settings_.source;
   status.model_id = settings_.model_id;
