@@ -48,8 +48,9 @@ struct TrackResult {
   bool frame_used = true;  ///< false: the frame was unusable (wrong size, no reading) and changed nothing
   float confidence = 0;    ///< [0, 1]
   RigidTransform pose;     ///< the base region, camera <- model, metres
-  std::span<const Region> regions;        ///< base first (when observed), then ascending ids
-  std::span<const Point3f> positions;     ///< camera frame, metres
+  std::span<const Region> regions;  ///< base first (when observed), then ascending ids
+  std::span<const Point3f>
+      positions;  ///< camera frame, metres; of a rigid point within the inlier limit of its region
   std::span<const std::int8_t> labels;    ///< region id, kDeformed or kNotObserved
   std::span<const std::int32_t> matches;  ///< pixel v * width + u, -1 none
   std::span<const float> residuals;       ///< distance to the matched reading, metres; 0 without a match
