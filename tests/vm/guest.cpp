@@ -1,0 +1,137 @@
+#include "tests/vm/guest.hpp"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "drivers/recording/recording.hpp"
+#include "drivers/v4l2/v4l2.hpp"
+#include "firmware-app/measure/clock.hpp"
+
+namespace pliant::test {
+
+namespace {
+
+constexpr const char* kNetwork = "udpm://239.255.76.67:7667?ttl=0";
+
+std::string sensor_text(const Intrinsics& camera, double rate) {
+  std::ostringstream text;
+  text << "name = \"camera of the tests\"\n[mode]\nwidth = " << camera.width << "\nheight = " << camera.height
+       << "\nrate = " << rate << "\n[camera]\nfx = " << camera.fx << "\nfy = " << camera.fy
+       << "\ncx = " << camera.cx << "\ncy = " << camera.cy << "\ndepth_scale = " << camera.depth_scale
+       << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+bool wait_until(double seconds, const std::function<bool()>& met) {
+  const std::int64_t end = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
+  while (!met()) {
+    if (monotonic_ns() > end) return false;
+    usleep(20'000);
+  }
+  return true;
+}
+
+const Recorded& recorded() {
+  static const Recorded all = [] {
+    Recorded read;
+    const auto source = open_recording(kRecording);
+    if (!source) {
+      ADD_FAILURE() << source.error().message;
+      return read;
+    }
+    read.camera = (*source)->intrinsics();
+    SourceItem item;
+    for (;;) {
+      (*source)->next(10'000, item);
+      if (item.event != SourceEvent::frame) break;
+      read.pictures.emplace_back(item.frame.depth,
+                                 item.frame.depth + std::ptrdiff_t{item.frame.width} * item.frame.height);
+    }
+    return read;
+  }();
+  return all;
+}
+
+V4l2Node depth_node(const std::string& bus) {
+  for (const V4l2Node& node : list_v4l2().nodes)
+    if (node.offers_depth() && node.bus == bus) return node;
+  return {};
+}
+
+Tracking::Tracking(const std::filesystem::path& folder, const std::string& source, double rate)
+    : folder_(folder) {
+  LcmSubscriber::Handlers handlers;
+  handlers.status = [this](const StatusMessage& status) {
+    latest_ = status;
+    ++heard_;
+    if (!states_.ends_with(name_of(status.device))) states_ += std::string(" ") + name_of(status.device);
+    if (!status.last_error.empty() && errors_.find(status.last_error) == std::string::npos)
+      errors_ += "\n  " + status.last_error;
+  };
+  auto subscriber = LcmSubscriber::create(kNetwork, "PLIANT", handlers);
+  if (!subscriber) {
+    ADD_FAILURE() << subscriber.error().message;
+    return;
+  }
+  subscriber_ = std::move(*subscriber);
+  const std::filesystem::path sensor = folder_ / "sensor.toml";
+  write_file(sensor, sensor_text(recorded().camera, rate));
+  process_ = start_pliant({"run", "--source", source, "--sensor", sensor.string(), "--model", kModel,
+                           "--lcm-url", kNetwork, "--stats", (folder_ / "stats.json").string()},
+                          folder_);
+}
+
+Tracking::~Tracking() {
+  if (process_ > 0) static_cast<void>(stop());
+}
+
+bool Tracking::ended() {
+  siginfo_t about{};
+  return process_ <= 0 ||
+         (waitid(P_PID, static_cast<id_t>(process_), &about, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+          about.si_pid == process_);
+}
+
+bool Tracking::until(double seconds, const std::function<bool(const StatusMessage&)>& met) {
+  const std::int64_t end = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
+  while (subscriber_ != nullptr && monotonic_ns() < end && !ended()) {
+    const std::int64_t before = heard_;
+    subscriber_->handle(100);
+    if (heard_ != before && met(latest_)) return true;
+  }
+  return false;
+}
+
+double Tracking::rate_over(double seconds) {
+  const StatusMessage begin = latest_;
+  const auto enough = static_cast<std::int64_t>(seconds * 1e6);
+  static_cast<void>(
+      until(2 * seconds + 5, [&](const StatusMessage& now) { return now.utime - begin.utime >= enough; }));
+  const std::int64_t span = std::max<std::int64_t>(latest_.utime - begin.utime, 1);
+  return 1e6 * static_cast<double>(latest_.tracked - begin.tracked) / static_cast<double>(span);
+}
+
+Ended Tracking::stop() {
+  kill(process_, SIGTERM);
+  const Ended ended = wait_for(process_, folder_);
+  process_ = -1;
+  return ended;
+}
+
+std::string Tracking::told() const {
+  std::ostringstream text;
+  text << "states:" << states_ << "; frames tracked " << latest_.tracked << ", searching "
+       << latest_.searching << ", lost " << latest_.lost << ", dropped " << latest_.dropped << ", bad "
+       << latest_.bad_frames << ", slow " << latest_.slow_frames << "; a frame takes "
+       << latest_.latency_median << " us; errors:" << errors_
+       << "\nits own words: " << read_file(folder_ / "err.txt");
+  return text.str();
+}
+
+}  // namespace pliant::test

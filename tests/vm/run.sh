@@ -1,0 +1,48 @@
+#!/bin/bash
+# tests/vm/run.sh BUILD [FILTER]: what needs a kernel, in a virtual machine.
+#
+# A guest with Debian's own kernel runs guest_tests of the build folder BUILD (all, or those that GoogleTest's FILTER
+# names): depth cameras made of software, plugged into the guest's kernel, through the real uvcvideo, v4l2loopback and
+# PS1080 drivers. Needs no hardware, no root and no KVM. Keeps the guest's console in build/vm/console.log.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+most_seconds=420
+build=$(cd "$1" && pwd) filter=${2:-'*'}
+folder=$PWD/build/vm
+console=$folder/console.log
+die() { printf 'vm: %s; the console is in %s\n' "$*" "${console#"$PWD"/}" >&2; exit 1; }
+
+mkdir -p "$folder"
+begin=$SECONDS
+version=$(tests/vm/kernel.sh "$folder/kernel")
+tests/vm/guest_root.sh "$folder/kernel" "$build" "$folder/root" "$folder/root.cpio"
+printf 'Linux %s and a root of %d MB made in %d s; booting\n' "$version" \
+  $(($(stat -c %s "$folder/root.cpio") / 1000000)) $((SECONDS - begin))
+
+rm -f "$console"
+status=0
+timeout --kill-after=5 "$most_seconds" qemu-system-x86_64 -accel tcg,thread=multi -cpu max -smp 2 -m 1024 \
+  -kernel "$folder/kernel/boot/vmlinuz-$version" -initrd "$folder/root.cpio" \
+  -append "console=ttyS0 quiet panic=-1 mitigations=off tests=$filter" \
+  -display none -monitor none -serial "file:$console" -no-reboot -nic none </dev/null 2>"$folder/qemu.log" || status=$?
+
+grep -aE '^(guest: |\[ +(OK|FAILED|SKIPPED|PASSED|  )* +\])' "$console" | tr -d '\r' || true
+if grep -aq '^guest: the tests ended with 0 ' "$console" && ! grep -aq '^guest: the module' "$console"; then
+  echo "vm: passed in $((SECONDS - begin)) s"
+  exit 0
+fi
+# The first complaint of the first test that failed, in one line.
+complaint=$(tr -d '\r' <"$console" | awk '
+  /^guest: the module/ { print; exit }
+  /^\[ RUN / { test = $4; text = ""; next }
+  /: Failure$/ && text == "" { text = " "; collecting = 1; next }
+  /^\[  FAILED  \]/ && test != "" { print test " failed:" text; exit }
+  collecting && /^$/ { collecting = 0 }
+  collecting { gsub(/^ +/, ""); text = text " " $0 }')
+if [ -n "$complaint" ]; then die "$complaint"; fi
+if grep -aq 'Kernel panic' "$console"; then die "the guest's kernel panicked: $(grep -am1 'Kernel panic' "$console" | tr -d '\r')"; fi
+if [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
+  die "the guest did not end within $most_seconds s; last it said: $(grep -av '^\s*$' "$console" | tail -1 | tr -d '\r')"
+fi
+[ -s "$console" ] || die "the guest did not start: $(head -1 "$folder/qemu.log")"
+die "the guest ended without a result (qemu: $status $(head -1 "$folder/qemu.log"))"

@@ -1,0 +1,70 @@
+// A Structure Sensor on the bus, as OpenNI2's own driver (PS1080) sees it.
+#include "tests/vm/structure_sensor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "drivers/openni2/openni2_library.hpp"
+#include "firmware-app/measure/clock.hpp"
+#include "tests/vm/guest.hpp"
+
+namespace pliant::test {
+namespace {
+
+class StructureSensorTest : public CommandTest {
+ protected:
+  StructureSensor sensor_;
+};
+
+TEST_F(StructureSensorTest, OpenNi2SeesItComeAndGo) {
+  auto arrivals = std::make_shared<ArrivalSignal>();
+  const auto library = OpenNi2Library::start(arrivals);
+  ASSERT_TRUE(library) << library.error().message;
+  const auto listed = [&] {
+    const auto devices = (*library)->devices();
+    return devices ? *devices : std::vector<OpenNi2Device>();
+  };
+  EXPECT_TRUE(listed().empty());
+  for (int round = 0; round < 2; ++round) {
+    const std::uint64_t seen = arrivals->events();
+    ASSERT_EQ(sensor_.plug(kPort), "");
+    EXPECT_TRUE(arrivals->wait(seen, std::chrono::seconds(10))) << "the driver tells nothing of it";
+    EXPECT_TRUE(wait_until(5, [&] { return listed().size() == 1; }));
+    const auto devices = listed();
+    ASSERT_EQ(devices.size(), 1U);
+    EXPECT_EQ(devices.front().vendor_id, 0x1d27);
+    EXPECT_EQ(devices.front().product_id, 0x0600);
+    EXPECT_TRUE(devices.front().uri.starts_with("1d27/0600@")) << devices.front().uri;
+    const auto gone = (*library)->watch(devices.front().uri);
+    EXPECT_FALSE(*gone);
+    sensor_.unplug();
+    EXPECT_TRUE(wait_until(10, [&] { return gone->load(); })) << "the driver does not tell that it went";
+    EXPECT_TRUE(wait_until(5, [&] { return listed().empty(); }));
+  }
+}
+
+TEST_F(StructureSensorTest, DevicesNamesIt) {
+  ASSERT_EQ(sensor_.plug(kPort), "");
+  std::string told;
+  EXPECT_TRUE(wait_until(20, [&told] {
+    told = run_pliant({"devices"}).out;
+    return told.find("sources:\nopenni2:1d27/0600@") != std::string::npos;
+  })) << told;
+  EXPECT_NE(told.find("its description is config/sensors/structure_sensor.toml"), std::string::npos) << told;
+  sensor_.unplug();
+  EXPECT_TRUE(wait_until(20, [&told] {
+    told = run_pliant({"devices"}).out;
+    return told.find("no depth device is seen") != std::string::npos;
+  })) << told;
+}
+
+TEST_F(StructureSensorTest, OneThatDoesNotAnswerIsAnErrorInTime) {
+  ASSERT_EQ(sensor_.plug(kPort), "");
+  const std::int64_t begin = monotonic_ns();
+  const Ended ended = run_pliant({"run", "--source", "openni2:", "--model", kModel, "--lcm-url", "none"});
+  EXPECT_LT(monotonic_ns() - begin, 60'000'000'000);
+  expect_refused(ended, 3, {"openni2"});
+  sensor_.unplug();
+}
+
+}  // namespace
+}  // namespace pliant::test
