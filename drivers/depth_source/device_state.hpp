@@ -24,7 +24,7 @@ enum class StreamFault : std::uint8_t {
   noise,       ///< readings that are not a surface anywhere
   wrong_size,  ///< not the camera's size
   delayed,     ///< taken long before it arrived
-  slow,        ///< sound, but fewer frames than the mode promises; these are tracked
+  slow,        ///< sound, but fewer frames than the mode promises; tracked, with less confidence
   broken       ///< the driver says that the frame is not whole
 };
 inline constexpr int kStreamFaults = 8;

@@ -31,7 +31,7 @@ TrackMessages::TrackMessages(std::span<const Point3f> rest, std::uint64_t model_
       deformed_(rest_.size()),
       displacements_(rest_.size()) {}
 
-std::span<const MessageBody> TrackMessages::encode(const TrackResult& result) noexcept {
+std::span<const MessageBody> TrackMessages::encode(const TrackResult& result, float trust) noexcept {
   used_bytes_ = 0;
   used_bodies_ = 0;
   if (!result.frame_used) return {};
@@ -39,7 +39,7 @@ std::span<const MessageBody> TrackMessages::encode(const TrackResult& result) no
   // The pose of a base that is out of sight is carried along, not measured: it is not announced as new.
   const bool base_seen = tracking && !result.regions.empty() && result.regions.front().id == 0;
   if (base_seen) add_pose(result);
-  add_regions(result);
+  add_regions(result, trust);
   if (tracking) add_deformed(result);
   return std::span<const MessageBody>(bodies_).first(used_bodies_);
 }
@@ -61,7 +61,7 @@ void TrackMessages::add_pose(const TrackResult& result) noexcept {
   add_body(MessageKind::pose, out.size());
 }
 
-void TrackMessages::add_regions(const TrackResult& result) noexcept {
+void TrackMessages::add_regions(const TrackResult& result, float trust) noexcept {
   const bool tracking = result.state == TrackState::tracking;
   const std::span<const Region> no_regions;
   const auto regions =
@@ -78,7 +78,7 @@ void TrackMessages::add_regions(const TrackResult& result) noexcept {
     out.put<std::int64_t>(result.frame);
     out.put<std::uint64_t>(model_id_);
     out.put<std::int8_t>(static_cast<std::int8_t>(result.state));
-    out.put<float>(tracking ? result.confidence : 0.0F);
+    out.put<float>(tracking ? trust * result.confidence : 0.0F);
     out.put<std::int16_t>(static_cast<std::int16_t>(part));
     out.put<std::int16_t>(static_cast<std::int16_t>(part_count));
     out.put<std::int32_t>(static_cast<std::int32_t>(regions.size()));
@@ -87,7 +87,7 @@ void TrackMessages::add_regions(const TrackResult& result) noexcept {
       out.put<std::int8_t>(region.parent);
       out.put<std::int32_t>(static_cast<std::int32_t>(region.points));
       out.put<float>(region.rms);
-      out.put<float>(region.confidence);
+      out.put<float>(trust * region.confidence);
       put_transform(out, region.pose);
     }
     out.put<std::int32_t>(static_cast<std::int32_t>(rest_.size()));

@@ -35,8 +35,8 @@ class TrackMessages {
 
   /// The bodies of one frame: pose, the parts of regions, the parts of deformed. Valid until the next call.
   /// Pose only while the base region is seen; deformed only while tracking; none for a frame that was not
-  /// used.
-  [[nodiscard]] std::span<const MessageBody> encode(const TrackResult& result) noexcept;
+  /// used. Every confidence is told times `trust`, [0, 1]: what the state of the stream leaves of it.
+  [[nodiscard]] std::span<const MessageBody> encode(const TrackResult& result, float trust = 1) noexcept;
 
   /// What one frame of a model of `points` points can take at most.
   [[nodiscard]] static constexpr std::size_t max_bodies(std::size_t points) noexcept {
@@ -64,7 +64,7 @@ class TrackMessages {
   }
 
   void add_pose(const TrackResult& result) noexcept;
-  void add_regions(const TrackResult& result) noexcept;
+  void add_regions(const TrackResult& result, float trust) noexcept;
   void add_deformed(const TrackResult& result) noexcept;
   void add_body(MessageKind kind, std::size_t bytes) noexcept;
   [[nodiscard]] std::span<std::uint8_t> free_bytes() noexcept;

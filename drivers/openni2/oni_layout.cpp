@@ -9,6 +9,10 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <span>
+
+#include "drivers/openni2/little_endian_reads.hpp"
+#include "drivers/openni2/oni_records.hpp"
 
 namespace pliant {
 
@@ -16,50 +20,36 @@ namespace {
 
 // All numbers are little-endian.
 constexpr std::array<unsigned char, 4> kMagic = {'N', 'I', '1', '0'};
-constexpr std::size_t kHeaderBytes = 24;            // magic, version (8), latest stamp (8), highest node (4)
+constexpr std::size_t kHeaderBytes = 24;  // magic, version (8), latest stamp (8), highest stream (4)
 constexpr std::uint32_t kRecordMagic = 0x0052494E;  // "NIR"
-constexpr std::size_t kRecordBytes = 28;  // magic, type, node, bytes of fields, of payload, undo position (8)
-constexpr std::uint32_t kFirstProperty = 3, kLastProperty = 6;  // of whole numbers, reals, texts, bytes
-constexpr std::uint32_t kIntProperty = 3, kRealProperty = 4;
-constexpr std::array<std::uint32_t, 3> kNodeAdded = {2, 12, 13};  // of three versions
-constexpr std::uint32_t kHighestNode = 255;                       // the library makes room for all of them
-constexpr std::uint32_t kLongestName = 256;                       // with its zero
-constexpr std::uint32_t kEnd = 11;                                // the type of the last record
+constexpr std::size_t kMostHeader =
+    28;  // of a record: magic, type, stream, bytes of fields, of payload, undo
+
+/// The library plays what is no older and no newer.
+constexpr std::array<std::uint32_t, 4> kOldest = {1, 0, 0, 4}, kFirstOf64Bits = {1, 0, 1, 0},
+                                       kNewest = {1, 0, 1, 0};
 
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-std::uint32_t number_at(const unsigned char* bytes) {
-  return bytes[0] | std::uint32_t{bytes[1]} << 8 | std::uint32_t{bytes[2]} << 16 |
-         std::uint32_t{bytes[3]} << 24;
+/// Reads as much of `bytes` as there is from `at` on.
+std::span<const unsigned char> read_at(std::FILE* file, std::uint64_t at, std::span<unsigned char> bytes) {
+  if (fseeko(file, static_cast<off_t>(at), SEEK_SET) != 0) return {};
+  return bytes.first(std::fread(bytes.data(), 1, bytes.size(), file));
 }
 
-bool is_node_added(std::uint32_t type) {
-  return std::find(kNodeAdded.begin(), kNodeAdded.end(), type) != kNodeAdded.end();
+OniRecord header_of(std::span<const unsigned char> bytes) {
+  return {little_endian32(bytes, 4), little_endian32(bytes, 8), little_endian32(bytes, 12),
+          little_endian32(bytes, 16)};
 }
 
-bool read_number(std::FILE* file, std::uint32_t& number) {
-  std::array<unsigned char, 4> bytes{};
-  if (std::fread(bytes.data(), 1, bytes.size(), file) != bytes.size()) return false;
-  number = number_at(bytes.data());
-  return true;
-}
-
-/// The fields behind a record's header begin with a name, and a property goes on with the length of its
-/// value. The library takes both as they are: letters beyond ASCII in a name end it in a crash.
-bool names_are_sound(std::FILE* file, std::uint32_t type, std::uint64_t fields) {
-  std::uint32_t length = 0;
-  if (!read_number(file, length) || length < 2 || length > kLongestName || kRecordBytes + 4 + length > fields)
-    return false;
-  for (std::uint32_t i = 0; i < length; ++i) {
-    const int c = std::fgetc(file);
-    if (i + 1 < length ? c < 0x20 || c >= 0x7f : c != 0) return false;
-  }
-  if (is_node_added(type)) return true;
-  std::uint32_t bytes = 0;
-  if (!read_number(file, bytes) || kRecordBytes + 4 + length + 4 + bytes != fields) return false;
-  return (type != kIntProperty && type != kRealProperty) || bytes == 8;
+bool is_seek_table(std::FILE* file, std::uint32_t header_bytes, const OniSeekTable& table) {
+  std::array<unsigned char, kMostHeader> bytes{};
+  if (read_at(file, table.at, bytes).size() < header_bytes) return false;
+  const OniRecord record = header_of(bytes);
+  return little_endian32(bytes, 0) == kRecordMagic && record.type == OniRecordType::kSeekTable &&
+         record.stream == table.stream && record.fields == header_bytes && record.payload == table.payload;
 }
 
 }  // namespace
@@ -81,35 +71,44 @@ Outcome check_oni_layout(std::FILE* file, std::uint64_t size, std::string_view n
   const auto bad = [&](std::string_view what) {
     return Error{ErrorKind::bad_input, fmt::format("{}: {}", name, what)};
   };
-  std::array<unsigned char, kRecordBytes> bytes{};
-  if (std::fread(bytes.data(), 1, kHeaderBytes, file) != kHeaderBytes ||
-      std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0)
+  std::array<unsigned char, kMostHeader + OniRecords::kLookedAt> buffer{};
+  const std::span<const unsigned char> header = read_at(file, 0, std::span(buffer).first(kHeaderBytes));
+  if (header.size() != kHeaderBytes || std::memcmp(header.data(), kMagic.data(), kMagic.size()) != 0)
     return bad("is not an .oni recording");
-  if (number_at(&bytes[20]) > kHighestNode)
+  const std::array<std::uint32_t, 4> version = {header[4], header[5], little_endian32(header, 4) >> 16,
+                                                little_endian32(header, 8)};
+  if (version < kOldest || version > kNewest)
+    return bad(fmt::format("is damaged, or of a kind that libOpenNI2 does not play: version {}.{}.{}.{}",
+                           version[0], version[1], version[2], version[3]));
+  if (little_endian32(header, 20) > OniRecords::kHighestStream)
     return bad("is damaged: it speaks of more streams than there can be");
-  std::array<bool, kHighestNode + 1> added{};
+  OniRecords records(version < kFirstOf64Bits, little_endian32(header, 20), little_endian64(header, 12));
+  const std::uint32_t header_bytes = records.header_bytes();
   std::uint64_t at = kHeaderBytes;
   for (;;) {
-    if (fseeko(file, static_cast<off_t>(at), SEEK_SET) != 0 ||
-        std::fread(bytes.data(), 1, kRecordBytes, file) != kRecordBytes)
+    const std::span<const unsigned char> bytes = read_at(file, at, buffer);
+    if (bytes.size() < header_bytes)
       return bad(fmt::format("is cut short at byte {}; was the program that recorded it stopped?", at));
-    const std::uint64_t fields = number_at(&bytes[12]), payload = number_at(&bytes[16]);
-    if (number_at(bytes.data()) != kRecordMagic || fields < kRecordBytes)
+    const OniRecord record = header_of(bytes);
+    if (little_endian32(bytes, 0) != kRecordMagic || record.fields < header_bytes)
       return bad(fmt::format("is damaged at byte {}: no record begins there", at));
-    if (fields + payload > size - at)
+    const std::uint64_t length = std::uint64_t{record.fields} + record.payload;
+    if (length > size - at)
       return bad(fmt::format("is cut short: the record at byte {} leads beyond the end", at));
-    const std::uint32_t type = number_at(&bytes[4]);
-    if (type == kEnd) return success();
-    if (is_node_added(type)) {
-      const std::uint32_t node = number_at(&bytes[8]);
-      if (node > kHighestNode || added[node])
-        return bad(fmt::format("is damaged: the record at byte {} adds a stream that cannot be", at));
-      added[node] = true;
+    const std::size_t there = std::min<std::size_t>(bytes.size(), record.fields);
+    if (const std::string_view why = records.take(record, bytes.subspan(header_bytes, there - header_bytes));
+        !why.empty())
+      return bad(fmt::format("is damaged: the record at byte {} {}", at, why));
+    if (const auto table = records.seek_table()) {
+      if (table->at > size || header_bytes + table->payload > size - table->at)
+        return bad(fmt::format("is cut short: the record at byte {} names a seek table beyond the end", at));
+      if (!is_seek_table(file, header_bytes, *table))
+        return bad(
+            fmt::format("is damaged: the record at byte {} adds a stream whose seek table is not there", at));
     }
-    if (((type >= kFirstProperty && type <= kLastProperty) || is_node_added(type)) &&
-        !names_are_sound(file, type, fields))
-      return bad(fmt::format("is damaged: the record at byte {} holds no sound name and value", at));
-    at += fields + payload;
+    if (record.type == OniRecordType::kEnd)
+      return records.data_begun() ? success() : Outcome(bad("holds no picture"));
+    at += length;
   }
 }
 

@@ -138,13 +138,16 @@ void LiveSource::take(SourceItem& item, std::int64_t now) {
     fault = judge_.judge(item.frame, now, clock_us(CLOCK_REALTIME));
   }
   monitor_.judged(fault);
+  monitor_.set_rate_share(judge_.rate_share());
   if (fault == StreamFault::none || fault == StreamFault::slow) {
-    useful_ns_ = alive_ns_ = now;
+    sound_ns_ = useful_ns_ = alive_ns_ = now;
+    monitor_.set_blind(false);
     pause_ns_ = kFirstPause;
     attempts_ = 0;
     reason_.clear();
     return;
   }
+  if (now - sound_ns_ >= stall_ns()) monitor_.set_blind(true);
   item.event = SourceEvent::bad_frame;
   if (fault != StreamFault::broken) item.fault = fault_text(fault, item.frame, camera_);
   reason_ = item.fault;
@@ -165,6 +168,7 @@ void LiveSource::watch_silence(std::int64_t now, SourceItem& item) {
          item);
   } else if (last_frame_ns_ != 0 && now - since >= stall_ns() && monitor_.state() == DeviceState::streaming) {
     monitor_.set_state(DeviceState::stalled);
+    monitor_.set_blind(true);
     monitor_.stalled();
     item.fault = fmt::format("no frame for {} ms", (now - since) / kMillisecond);
   }
@@ -174,6 +178,7 @@ void LiveSource::lose(std::string reason, SourceItem& item) {
   device_.reset();
   last_frame_ns_ = 0;
   monitor_.set_state(DeviceState::lost);
+  monitor_.set_blind(true);
   if (settings_.arrivals != nullptr) arrivals_seen_ = settings_.arrivals->events();
   next_try_ns_ = monotonic_ns() + pause_ns_;
   reason_ = std::move(reason);

@@ -70,6 +70,7 @@ class LiveSource final : public DepthSource {
   std::int64_t last_frame_ns_ = 0;   // of this opening; 0 before the first
   std::int64_t useful_ns_ = 0;       // the latest moment that the stream was usable, or begun
   std::int64_t alive_ns_ = 0;        // as useful_ns_, but not begun anew by opening
+  std::int64_t sound_ns_ = 0;        // the latest frame that was passed on
   std::int64_t next_try_ns_ = 0, pause_ns_ = kFirstPause;
   std::uint64_t arrivals_seen_ = 0;
   int attempts_ = 0;

@@ -110,7 +110,7 @@ bool StreamJudge::is_delayed(const DepthFrame& frame, std::int64_t arrival_us) n
     least_lag_us_ = lag;
     lag_known_ = true;
   }
-  return (lag - least_lag_us_) * 1000 > kMostDelay * promised_ns_;
+  return (lag - least_lag_us_) * 1000 > kMostDelay * promised_ns_ || lag * 1000 > kMostAge * frame_time_ns_;
 }
 
 void StreamJudge::note_interval(std::int64_t arrival_ns) noexcept {

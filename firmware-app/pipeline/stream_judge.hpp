@@ -29,9 +29,16 @@ class StreamJudge {
 
   /// Time between frames, ns: what the mode promises, or what a slow stream really keeps.
   [[nodiscard]] std::int64_t frame_time_ns() const noexcept { return frame_time_ns_; }
+  /// Of the frames a second that the mode promises, the share that comes; 1 where the stream is not slow.
+  [[nodiscard]] float rate_share() const noexcept {
+    return static_cast<float>(promised_ns_) / static_cast<float>(frame_time_ns_);
+  }
 
-  /// A frame is delayed when it took longer to arrive than the quickest by this many frame times.
+  /// A frame is delayed when it took longer to arrive than the quickest by this many frame times,
   static constexpr int kMostDelay = 3;
+  /// or when it is older than this many, however quick the others were: one frame time for taking it, one for
+  /// the way, and one for each of the kernel's four buffers. What is older was held back somewhere.
+  static constexpr int kMostAge = 6;
   /// A stream is slow when its frames take this share of the promised time longer, in the median.
   static constexpr double kSlow = 1.5;
 

@@ -57,7 +57,8 @@ void TrackingLoop::publish_status_if_due(const RunFigures& figures, bool state_c
   if (parts_.publisher == nullptr) return;
   const DeviceMonitor* monitor = parts_.capture.monitor();
   const bool device_changed =
-      monitor != nullptr && (parts_.capture.device() != told_device_ || monitor->fault() != told_fault_);
+      monitor != nullptr && (parts_.capture.device() != told_device_ || monitor->fault() != told_fault_ ||
+                             monitor->blind() != told_blind_);
   if (state_changed || device_changed || monotonic_ns() - last_status_ns_ >= kSecond) publish_status(figures);
 }
 
@@ -89,14 +90,14 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   parts_.live.tracked.store(figures.tracked, std::memory_order_relaxed);
   parts_.live.state.store(result.state, std::memory_order_relaxed);
   parts_.live.last_total_ns.store(figures.profile.last_total(), std::memory_order_relaxed);
-  parts_.live.confidence.store(result.confidence, std::memory_order_relaxed);
+  parts_.live.confidence.store(trust() * result.confidence, std::memory_order_relaxed);
   parts_.live.deadline_misses.store(work_.misses(), std::memory_order_relaxed);
   parts_.live.work_level.store(work_.level(), std::memory_order_relaxed);
   parts_.live.regions.store(static_cast<int>(result.regions.size()), std::memory_order_relaxed);
 }
 
 void TrackingLoop::hand_over(const CapturedFrame& captured, const TrackResult& result) {
-  const std::span<const MessageBody> bodies = parts_.messages.encode(result);
+  const std::span<const MessageBody> bodies = parts_.messages.encode(result, trust());
   if (settings_.hash) hash_.add(bodies);
   parts_.latency.arrived(result.utime, captured.arrival_ns);
   if (parts_.publisher != nullptr) {
@@ -110,10 +111,17 @@ void TrackingLoop::hand_over(const CapturedFrame& captured, const TrackResult& r
   if (parts_.files != nullptr) parts_.files->submit(result);
 }
 
+float TrackingLoop::trust() const noexcept {
+  const DeviceMonitor* monitor = parts_.capture.monitor();
+  return monitor == nullptr ? 1.0F : monitor->rate_share();
+}
+
 void TrackingLoop::fill_device(StatusContent& status) const {
   status.device = parts_.capture.device();
   const DeviceMonitor* monitor = parts_.capture.monitor();
   if (monitor == nullptr) return;
+  // The state is that of the last frame; where none comes it must not be told as if it were the present one.
+  if (monitor->blind() && status.state == TrackState::tracking) status.state = TrackState::lost;
   status.stream_fault = monitor->fault();
   status.zero_frames = monitor->frames(StreamFault::zero);
   status.stuck_frames = monitor->frames(StreamFault::stuck);
@@ -173,6 +181,7 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
 
   told_device_ = status.device;
   told_fault_ = status.stream_fault;
+  told_blind_ = parts_.capture.monitor() == nullptr || parts_.capture.monitor()->blind();
   recent_.clear();
   last_status_ns_ = now;
   frames_at_status_ = figures.frames();

@@ -59,6 +59,8 @@ class TrackingLoop {
   void publish_status_if_due(const RunFigures& figures, bool state_changed);
   void publish_status(const RunFigures& figures);
   void fill_device(StatusContent& status) const;
+  /// What a slow stream leaves of the confidence in a result.
+  [[nodiscard]] float trust() const noexcept;
 
   Parts parts_;
   const Settings settings_;
@@ -69,6 +71,7 @@ class TrackingLoop {
   std::int64_t last_frame_ = -1;
   DeviceState told_device_ = DeviceState::absent;  // by the last status
   StreamFault told_fault_ = StreamFault::none;
+  bool told_blind_ = true;
 };
 
 }  // namespace pliant

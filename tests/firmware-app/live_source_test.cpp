@@ -19,7 +19,7 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 
 /// What the device is made to do; shared by all openings of it.
 struct Script {
-  enum class Stream { sound, silent, lost, zero, stuck, noise, wrong_size, delayed, broken };
+  enum class Stream { sound, silent, lost, zero, stuck, noise, wrong_size, delayed, broken, slow };
   std::atomic<Stream> stream{Stream::sound};
   std::atomic<bool> plugged{true}, usable{true};
   std::atomic<int> openings{0}, open_now{0}, resets{0};
@@ -54,7 +54,8 @@ class Device final : public DepthSource {
       return;
     }
     sleep_until_ns(due_);
-    due_ = std::max(due_ + 20 * kMillisecond, monotonic_ns() - 20 * kMillisecond);
+    const std::int64_t period = (script_.stream == Stream::slow ? 80 : 20) * kMillisecond;
+    due_ = std::max(due_ + period, monotonic_ns() - 20 * kMillisecond);
     item.event = SourceEvent::frame;
     draw();
     timespec now{};
@@ -168,6 +169,40 @@ TEST(LiveSource, NoticesAStallWithinThreeFrameTimesAndItsEnd) {
   EXPECT_GE(rig.until(DeviceState::streaming, 300), 0);
   EXPECT_EQ(rig.source->monitor()->stalls(), 1);
   EXPECT_EQ(rig.script.openings, 1);
+}
+
+TEST(LiveSource, ASlowStreamIsPassedOnAndSaidToBeSlow) {
+  Rig rig;
+  rig.start();
+  rig.run(300);
+  EXPECT_EQ(rig.source->monitor()->rate_share(), 1);
+  rig.script.stream = Script::Stream::slow;
+  rig.run(700);  // more than half of the nine intervals that count
+  EXPECT_EQ(rig.source->monitor()->fault(), StreamFault::slow);
+  EXPECT_NEAR(rig.source->monitor()->rate_share(), 0.25, 0.06);
+  EXPECT_GT(rig.source->monitor()->frames(StreamFault::slow), 0);
+  EXPECT_EQ(rig.source->monitor()->state(), DeviceState::streaming);
+  EXPECT_FALSE(rig.source->monitor()->blind());
+  EXPECT_EQ(rig.bad, 0);
+  rig.script.stream = Script::Stream::sound;
+  rig.run(400);
+  EXPECT_EQ(rig.source->monitor()->fault(), StreamFault::none);
+  EXPECT_EQ(rig.source->monitor()->rate_share(), 1);
+}
+
+TEST(LiveSource, IsBlindWhileNoSoundFrameComes) {
+  using Stream = Script::Stream;
+  Rig rig;
+  rig.start();
+  EXPECT_TRUE(rig.source->monitor()->blind());
+  for (const Stream stream : {Stream::zero, Stream::stuck, Stream::silent, Stream::lost}) {
+    rig.script.stream = Stream::sound;
+    rig.run(200);
+    EXPECT_FALSE(rig.source->monitor()->blind());
+    rig.script.stream = stream;
+    rig.run(60 + 60);  // three frame times, and what the machine adds
+    EXPECT_TRUE(rig.source->monitor()->blind()) << static_cast<int>(stream);
+  }
 }
 
 TEST(LiveSource, OpensAStalledDeviceAgainAndResetsItAsALastResort) {

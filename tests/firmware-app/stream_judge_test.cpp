@@ -105,6 +105,21 @@ TEST(StreamJudge, KnowsAFrameThatCameLate) {
   EXPECT_EQ(stream.next(kUsual), StreamFault::none);
 }
 
+TEST(StreamJudge, KnowsAStreamThatIsLateFromItsFirstFrame) {
+  Stream stream;
+  for (int i = 0; i < 10; ++i) {
+    stream.surface();
+    EXPECT_EQ(stream.next(199'000), StreamFault::none) << "six frame times are what buffers may hold";
+  }
+  for (const std::int64_t age : {201'000, 250'000, 1'000'000}) {
+    stream.judge.restart();
+    for (int i = 0; i < 10; ++i) {
+      stream.surface();
+      EXPECT_EQ(stream.next(age), StreamFault::delayed);
+    }
+  }
+}
+
 TEST(StreamJudge, KnowsASlowStreamAndWaitsLongerForIt) {
   Stream stream;
   const auto next = [&](std::int64_t interval) {
@@ -112,12 +127,15 @@ TEST(StreamJudge, KnowsASlowStreamAndWaitsLongerForIt) {
     return stream.next(0, interval);
   };
   for (int i = 0; i < 12; ++i) ASSERT_EQ(next(kFrameNs), StreamFault::none);
+  EXPECT_EQ(stream.judge.rate_share(), 1);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(next(4 * kFrameNs), StreamFault::none) << "a hiccup of four frames";
   for (int i = 0; i < 6; ++i) static_cast<void>(next(3 * kFrameNs));
   EXPECT_EQ(next(3 * kFrameNs), StreamFault::slow);
   EXPECT_EQ(stream.judge.frame_time_ns(), 3 * kFrameNs);
+  EXPECT_FLOAT_EQ(stream.judge.rate_share(), 1.0F / 3);
   for (int i = 0; i < 6; ++i) static_cast<void>(next(kFrameNs));
   EXPECT_EQ(next(kFrameNs), StreamFault::none);
+  EXPECT_EQ(stream.judge.rate_share(), 1);
 }
 
 TEST(StreamJudge, TakesNoRealFrameForNoise) {

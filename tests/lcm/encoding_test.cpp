@@ -123,6 +123,17 @@ TEST(LcmEncoding, RegionsAndDeformedAreWhatTheGeneratedClassesWrite) {
   EXPECT_EQ(bytes_of(bodies[2]), generated_bytes(generated_deformed(sample, 0, 120, 0, 1)));
 }
 
+TEST(LcmEncoding, EveryConfidenceIsLessenedByTheTrust) {
+  const SampleResult sample(50);
+  TrackMessages messages(sample.rest, kSampleModelId);
+  const auto bodies = messages.encode(sample.result, 0.25F);
+  regions_t expected = generated_regions(sample, 0, 50, 0, 1);
+  expected.confidence *= 0.25F;
+  for (region_t& region : expected.regions) region.confidence *= 0.25F;
+  ASSERT_EQ(bodies.size(), 3U);
+  EXPECT_EQ(bytes_of(bodies[1]), generated_bytes(expected));
+}
+
 TEST(LcmEncoding, LargeModelsGoInPartsThatAreWholeMessages) {
   const SampleResult sample(limits::kMaxModelPoints, 3, limits::kMaxRegions);
   TrackMessages messages(sample.rest, kSampleModelId);

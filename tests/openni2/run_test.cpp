@@ -78,6 +78,63 @@ TEST_F(OpenNi2Run, SurvivesAPulledCable) {
   EXPECT_EQ(last, TrackState::tracking);
 }
 
+TEST_F(OpenNi2Run, ASlowOrBlindStreamIsNeverToldAsIfItWereGood) {
+  const std::string model = box_model();
+  rig_.control().rate = 15;
+  const pid_t process = start_pliant(
+      {"run", "--source", "openni2:", "--model", model, "--lcm-url", "file://" + at("log") + "?mode=w"},
+      folder_);
+  const auto wait_for_frames = [this](int more) {
+    const std::int32_t until = rig_.control().sent + more;
+    for (int i = 0; i < 1500 && rig_.control().sent < until; ++i) usleep(10'000);
+    EXPECT_GE(rig_.control().sent, until);
+  };
+  wait_for_frames(30);
+  rig_.control().fault = SensorFault::slow;
+  wait_for_frames(14);
+  rig_.control().fault = SensorFault::none;
+  wait_for_frames(25);
+  rig_.control().fault = SensorFault::zero;
+  wait_for_frames(15);
+  kill(process, SIGTERM);
+  static_cast<void>(wait_for(process, folder_));
+
+  // What a subscriber hears, in order.
+  StreamFault fault = StreamFault::none;
+  TrackState state = TrackState::searching;
+  int slow = 0, good = 0, good_while_slow = 0;
+  std::int64_t slow_frames = 0, zero_frames = 0;
+  LcmSubscriber::Handlers handlers;
+  handlers.status = [&](const StatusMessage& status) {
+    fault = status.stream_fault;
+    state = status.state;
+    slow_frames = status.slow_frames;
+    zero_frames = status.zero_frames;
+  };
+  handlers.regions = [&](const RegionsMessage& regions) {
+    if (regions.state != TrackState::tracking || regions.part != 0) return;
+    // A quarter of the frames leaves a quarter of the confidence; the tracker's own is 0.4 at least.
+    if (regions.confidence < 0.35F) {
+      ++slow;
+      for (const RegionMessage& region : regions.regions) EXPECT_LT(region.confidence, 0.35F);
+    } else {
+      ++good;
+      good_while_slow += fault == StreamFault::slow ? 1 : 0;
+    }
+  };
+  auto reader = LcmSubscriber::create("file://" + at("log") + "?speed=0", "PLIANT", handlers);
+  ASSERT_TRUE(reader);
+  while ((*reader)->handle(100) >= 0) {
+  }
+  EXPECT_GE(slow, 4);
+  EXPECT_GE(good, 30);
+  EXPECT_LE(good_while_slow, 1) << "the first good one comes just before the status that says so";
+  EXPECT_GE(slow_frames, 4);
+  EXPECT_GE(zero_frames, 10);
+  EXPECT_EQ(fault, StreamFault::zero);
+  EXPECT_EQ(state, TrackState::lost) << "nothing is seen, so nothing is tracked";
+}
+
 TEST_F(OpenNi2Run, GivesUpWhenTheDeviceStaysAway) {
   const std::string model = box_model();
   rig_.control().rate = 15;

@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 #include <sstream>
 
 #include "drivers/recording/recording.hpp"
 #include "drivers/v4l2/v4l2.hpp"
 #include "firmware-app/measure/clock.hpp"
+#include "tests/vm/forth_and_back.hpp"
 
 namespace pliant::test {
 
@@ -24,6 +26,23 @@ std::string sensor_text(const Intrinsics& camera, double rate) {
        << "\ncx = " << camera.cx << "\ncy = " << camera.cy << "\ndepth_scale = " << camera.depth_scale
        << "\n";
   return text.str();
+}
+
+std::vector<RigidTransform> read_poses(const std::string& file) {
+  std::vector<RigidTransform> poses;
+  std::ifstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with('#')) continue;
+    std::istringstream numbers(line);
+    double seconds = 0;
+    RigidTransform pose;
+    Quaternion q{};
+    numbers >> seconds >> pose.translation[0] >> pose.translation[1] >> pose.translation[2] >> q.x >> q.y >>
+        q.z >> q.w;
+    pose.rotation = rotation_from_quaternion(q);
+    poses.push_back(pose);
+  }
+  return poses;
 }
 
 }  // namespace
@@ -53,6 +72,8 @@ const Recorded& recorded() {
       read.pictures.emplace_back(item.frame.depth,
                                  item.frame.depth + std::ptrdiff_t{item.frame.width} * item.frame.height);
     }
+    read.poses = read_poses(std::string(kRecording) + "/groundtruth.txt");
+    EXPECT_EQ(read.poses.size(), read.pictures.size());
     return read;
   }();
   return all;
@@ -73,6 +94,14 @@ Tracking::Tracking(const std::filesystem::path& folder, const std::string& sourc
     if (!states_.ends_with(name_of(status.device))) states_ += std::string(" ") + name_of(status.device);
     if (!status.last_error.empty() && errors_.find(status.last_error) == std::string::npos)
       errors_ += "\n  " + status.last_error;
+  };
+  handlers.regions = [this](const RegionsMessage& told) {
+    if (told.regions.empty() || told.regions.front().id != 0) return;
+    const std::size_t picture =
+        forth_and_back(static_cast<std::size_t>(told.frame), recorded().pictures.size());
+    const auto& place = told.regions.front().trans;
+    const Vector3 error = recorded().poses.at(picture).translation - Vector3(place[0], place[1], place[2]);
+    errors_of_place_.push_back(error.norm());
   };
   auto subscriber = LcmSubscriber::create(kNetwork, "PLIANT", handlers);
   if (!subscriber) {
@@ -106,6 +135,14 @@ bool Tracking::until(double seconds, const std::function<bool(const StatusMessag
     if (heard_ != before && met(latest_)) return true;
   }
   return false;
+}
+
+double Tracking::median_error() const {
+  if (errors_of_place_.empty()) return 1e9;
+  std::vector<double> sorted = errors_of_place_;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  return sorted[sorted.size() / 2];
 }
 
 double Tracking::rate_over(double seconds) {

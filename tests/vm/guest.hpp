@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/camera/intrinsics.hpp"
+#include "core/geometry/rigid_transform.hpp"
 #include "drivers/lcm/subscriber.hpp"
 #include "drivers/v4l2/v4l2_node.hpp"
 #include "tests/commands/program.hpp"
@@ -36,6 +37,7 @@ using Pictures = std::vector<std::vector<std::uint16_t>>;
 struct Recorded {
   Intrinsics camera;
   Pictures pictures;
+  std::vector<RigidTransform> poses;  ///< of the object, camera ← model, by picture
 };
 [[nodiscard]] const Recorded& recorded();
 
@@ -56,6 +58,9 @@ class Tracking {
   [[nodiscard]] const StatusMessage& latest() const { return latest_; }
   /// The states of the device in the order in which they were told: "opening streaming …".
   [[nodiscard]] const std::string& states() const { return states_; }
+  /// How far the base region is from where the object was in that picture, in the median over all frames
+  /// heard so far, metres; for a source whose frame numbers count the pictures from the first.
+  [[nodiscard]] double median_error() const;
   /// Frames tracked in each second of the next `seconds`.
   [[nodiscard]] double rate_over(double seconds);
   /// Asks the program to end.
@@ -71,6 +76,7 @@ class Tracking {
   pid_t process_ = -1;
   StatusMessage latest_;
   std::string states_, errors_;
+  std::vector<double> errors_of_place_;  // metres, by frame
   std::int64_t heard_ = 0;
 };
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "firmware-app/measure/clock.hpp"
+#include "tests/vm/forth_and_back.hpp"
 #include "tests/vm/guest.hpp"
 
 namespace pliant::test {
@@ -48,11 +49,9 @@ class Writer {
  private:
   void write_all() {
     const Pictures& pictures = recorded().pictures;
-    const std::size_t last = pictures.size() - 1;
     std::int64_t due = monotonic_ns();
     for (std::size_t i = 0; !stop_; ++i) {
-      const std::size_t turn = i % (2 * last);
-      const auto& picture = pictures[turn <= last ? turn : 2 * last - turn];
+      const auto& picture = pictures[forth_and_back(i, pictures.size())];
       const auto bytes = static_cast<ssize_t>(2 * picture.size());
       if (write(file_, picture.data(), 2 * picture.size()) != bytes) usleep(1000);
       due = std::max(due + 1'000'000'000 / kRate, monotonic_ns() - 1'000'000'000 / kRate);

@@ -1,8 +1,11 @@
 #include "tests/vm/uvc_camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <utility>
+
+#include "tests/vm/forth_and_back.hpp"
 
 namespace pliant::test {
 
@@ -164,8 +167,7 @@ std::optional<Bytes> UvcCamera::bulk(int /*endpoint*/, std::size_t most, std::in
     due_ns = next_ns_;
     return std::nullopt;
   }
-  const std::size_t last = pictures_.size() - 1, turn = count_ % (2 * last);
-  const std::vector<std::uint16_t>& picture = pictures_[turn <= last ? turn : 2 * last - turn];
+  const std::vector<std::uint16_t>& picture = pictures_[forth_and_back(count_, pictures_.size())];
   const std::size_t left = picture_bytes() - offset_,
                     part = std::min({left, most - kHeader, kPayload - kHeader});
   const void* pixels = picture.data();

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint16_t kVendor = 0x8086, kProduct = 0x0b07;  // a RealSense D435, which this driver serves
 constexpr int kRate = 10;                                     // frames a second
+constexpr double kMostError = 0.004;  // metres; a pixel of these pictures is 3 mm wide where the object is
 const std::string kSource = std::string("v4l2:") + kBus;
 
 class UvcCameraTest : public CommandTest {
@@ -101,6 +102,8 @@ TEST_F(UvcCameraTest, TheObjectIsFollowedAndFoundAgainAfterTheCableWasPulled) {
   printf("[          ] %.1f frames a second tracked, each %d us from capture to publishing\n", rate,
          tracking.latest().latency_median);
   EXPECT_GE(rate, kLeastRate) << tracking.told();
+  printf("[          ] %.1f mm off its place in the median\n", 1000 * tracking.median_error());
+  EXPECT_LT(tracking.median_error(), kMostError) << tracking.told();
 
   camera_.unplug();
   EXPECT_TRUE(tracking.until(5, [](const StatusMessage& status) {
