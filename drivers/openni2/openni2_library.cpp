@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/common/printable.hpp"
+#include "drivers/openni2/udev_guard.hpp"
 
 namespace pliant {
 
@@ -40,6 +41,7 @@ const char* name_of_status(OniStatus status) {
 
 Result<std::shared_ptr<OpenNi2Library>> OpenNi2Library::start(std::shared_ptr<ArrivalSignal> arrivals,
                                                               const OpenNi2Api& api) {
+  guard_udev();
   std::shared_ptr<OpenNi2Library> library(new OpenNi2Library(std::move(arrivals), api));
   if (const OniStatus status = api.initialize(ONI_API_VERSION); status != ONI_STATUS_OK)
     return library->fault("the library cannot start", status);
@@ -64,12 +66,13 @@ Result<std::shared_ptr<OpenNi2Library>> OpenNi2Library::start(std::shared_ptr<Ar
 
 namespace {
 
-/// libOniFile ends its playing thread by cancelling it, and OpenNI2's shutdown then unloads the code that the
-/// thread still unwinds through. So it stays loaded.
-void keep_file_player_loaded() {
+/// OpenNI2's drivers cancel their threads (libOniFile the one that plays, libPS1080 the one that hears of USB
+/// devices, when it is late), and the shutdown then unloads the code that a thread still unwinds through. So
+/// they stay loaded.
+void keep_drivers_loaded() {
   const auto keep = [](dl_phdr_info* info, std::size_t /*size*/, void* /*unused*/) {
     if (info->dlpi_name != nullptr &&
-        std::string_view(info->dlpi_name).find("libOniFile") != std::string_view::npos)
+        std::string_view(info->dlpi_name).find("/OpenNI2/Drivers/") != std::string_view::npos)
       static_cast<void>(dlopen(info->dlpi_name, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE));
     return 0;
   };
@@ -81,7 +84,7 @@ void keep_file_player_loaded() {
 OpenNi2Library::~OpenNi2Library() {
   if (callbacks_ != nullptr) api_.unregister_callbacks(callbacks_);
   if (started_) {
-    keep_file_player_loaded();
+    keep_drivers_loaded();
     api_.shutdown();
   }
 }

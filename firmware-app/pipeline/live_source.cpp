@@ -80,6 +80,11 @@ void LiveSource::next(int timeout_ms, SourceItem& item) {
   item.fault.clear();
   item.event = SourceEvent::end;
   if (closed_) return;
+  if (!asked_) {
+    // What lies between opening and the first question is not the device's fault.
+    asked_ = true;
+    opened_ns_ = useful_ns_ = alive_ns_ = monotonic_ns();
+  }
   const std::int64_t until = monotonic_ns() + std::max(timeout_ms, 0) * kMillisecond;
   do {
     item.event = SourceEvent::timeout;

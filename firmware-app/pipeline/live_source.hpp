@@ -75,6 +75,7 @@ class LiveSource final : public DepthSource {
   std::uint64_t arrivals_seen_ = 0;
   int attempts_ = 0;
   std::string reason_;  // why the device is not open
+  bool asked_ = false;  // for a frame
   bool closed_ = false;
 };
 

@@ -205,6 +205,20 @@ TEST(LiveSource, IsBlindWhileNoSoundFrameComes) {
   }
 }
 
+TEST(LiveSource, ALateStartOfTheProgramIsNotTheDevicesFault) {
+  Rig rig;
+  rig.settings.most_useless = rig.settings.first_frame = 0.1;
+  rig.settings.patience = 0.2;
+  rig.start();
+  sleep_until_ns(monotonic_ns() + 400 * kMillisecond);
+  rig.script.stream = Script::Stream::broken;  // what waited is of no use
+  rig.run(60);
+  rig.script.stream = Script::Stream::sound;
+  rig.run(100);
+  EXPECT_EQ(rig.script.openings, 1);
+  EXPECT_GT(rig.frames, 0);
+}
+
 TEST(LiveSource, OpensAStalledDeviceAgainAndResetsItAsALastResort) {
   Rig rig;
   rig.settings.most_stall = 0.1;

@@ -18,5 +18,5 @@ for module in "uvcvideo" "vhci-hcd" "v4l2loopback devices=1 video_nr=7"; do
 done
 @TESTS@ --gtest_color=no $(sed -n 's/.*tests=\([^ ]*\).*/--gtest_filter=\1/p' /proc/cmdline)
 echo "guest: the tests ended with $? after $(cut -d' ' -f1 /proc/uptime) s"
-dmesg | grep -iE 'usb|uvc|oops|bug:' | tail -40
+dmesg | grep -iE 'usb|uvc|oops|bug:|segfault' | tail -40
 poweroff -f

@@ -10,6 +10,7 @@ most_seconds=420
 build=$(cd "$1" && pwd) filter=${2:-'*'}
 folder=$PWD/build/vm
 console=$folder/console.log
+
 die() { printf 'vm: %s; the console is in %s\n' "$*" "${console#"$PWD"/}" >&2; exit 1; }
 
 mkdir -p "$folder"
@@ -23,7 +24,7 @@ rm -f "$console"
 status=0
 timeout --kill-after=5 "$most_seconds" qemu-system-x86_64 -accel tcg,thread=multi -cpu max -smp 2 -m 1024 \
   -kernel "$folder/kernel/boot/vmlinuz-$version" -initrd "$folder/root.cpio" \
-  -append "console=ttyS0 quiet panic=-1 mitigations=off tests=$filter" \
+  -append "console=ttyS0 quiet loglevel=0 panic=-1 mitigations=off tests=$filter" \
   -display none -monitor none -serial "file:$console" -no-reboot -nic none </dev/null 2>"$folder/qemu.log" || status=$?
 
 grep -aE '^(guest: |\[ +(OK|FAILED|SKIPPED|PASSED|  )* +\])' "$console" | tr -d '\r' || true
@@ -39,7 +40,9 @@ complaint=$(tr -d '\r' <"$console" | awk '
   /^\[  FAILED  \]/ && test != "" { print test " failed:" text; exit }
   collecting && /^$/ { collecting = 0 }
   collecting { gsub(/^ +/, ""); text = text " " $0 }')
-if [ -n "$complaint" ]; then die "$complaint"; fi
+crashed=$(tr -d '\r' <"$console" | awk '/^\[ RUN / { test = $4 } /^guest: the tests ended with 1[0-9][0-9] / { print test }')
+[ -n "$complaint" ] || [ -z "$crashed" ] || complaint="$crashed ended the program: $(grep -am1 segfault "$console" | tr -d '\r')"
+if [ -n "$complaint" ]; then die "${complaint:0:400}"; fi
 if grep -aq 'Kernel panic' "$console"; then die "the guest's kernel panicked: $(grep -am1 'Kernel panic' "$console" | tr -d '\r')"; fi
 if [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
   die "the guest did not end within $most_seconds s; last it said: $(grep -av '^\s*$' "$console" | tail -1 | tr -d '\r')"

@@ -2,6 +2,9 @@
 #include "tests/vm/structure_sensor.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <thread>
 
 #include "drivers/openni2/openni2_library.hpp"
 #include "firmware-app/measure/clock.hpp"
@@ -40,6 +43,21 @@ TEST_F(StructureSensorTest, OpenNi2SeesItComeAndGo) {
     EXPECT_TRUE(wait_until(10, [&] { return gone->load(); })) << "the driver does not tell that it went";
     EXPECT_TRUE(wait_until(5, [&] { return listed().empty(); }));
   }
+}
+
+TEST_F(StructureSensorTest, ADeviceThatIsGoneBeforeItIsLookedAtHarmsNothing) {
+  std::thread loose_cable([this] {
+    for (int i = 0; i < 12 && sensor_.plug(kPort).empty(); ++i) {
+      usleep(100'000);  // the kernel needs longer to ask it what it is
+      sensor_.unplug();
+    }
+  });
+  {
+    const auto library = OpenNi2Library::start();
+    EXPECT_TRUE(library) << library.error().message;
+    EXPECT_EQ(run_pliant({"devices"}).code, 0);
+  }
+  loose_cable.join();
 }
 
 TEST_F(StructureSensorTest, DevicesNamesIt) {
