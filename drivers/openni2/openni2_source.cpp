@@ -42,9 +42,14 @@ class OpenNi2Source final : public DepthSource {
       item.fault = "openni2: the device was unplugged or failed";
       return;
     }
+    std::int64_t step = 0;
     switch (stream_.read(timeout_ms, item.frame, item.fault)) {
       case OpenNi2Stream::Got::frame: {
         item.event = SourceEvent::frame;
+        // What the library had no room for leaves a gap in its count; a step beyond a minute is no gap.
+        step = index_ < 0 ? 1 : item.frame.number - index_;
+        if (step < 1 || step > kLongestGap) step = 1;
+        index_ = item.frame.number;
         // The device's clock runs evenly, as our monotonic one does; the wall clock may be set at any time.
         const std::int64_t arrival = clock_us(CLOCK_MONOTONIC);
         const std::int64_t captured = clock_.to_ours(item.frame.utime, arrival);
@@ -53,6 +58,8 @@ class OpenNi2Source final : public DepthSource {
       }
       case OpenNi2Stream::Got::unfit:
         item.event = SourceEvent::bad_frame;
+        index_ = -1;
+        step = 1;
         break;
       case OpenNi2Stream::Got::timeout:
         item.event = SourceEvent::timeout;
@@ -61,8 +68,8 @@ class OpenNi2Source final : public DepthSource {
         item.event = SourceEvent::lost;
         break;
     }
+    number_ += step;
     item.frame.number = number_;
-    if (item.event == SourceEvent::frame || item.event == SourceEvent::bad_frame) ++number_;
   }
 
  private:
@@ -71,7 +78,9 @@ class OpenNi2Source final : public DepthSource {
   std::shared_ptr<std::atomic<bool>> gone_;
   OpenNi2Stream stream_;
   DeviceClock clock_;
-  std::int64_t number_ = 0;
+  static constexpr std::int64_t kLongestGap = 1800;
+  std::int64_t number_ = -1;  // of the latest frame
+  std::int64_t index_ = -1;   // the library's own of the latest, where it is known
   bool closed_ = false;
 };
 

@@ -35,6 +35,7 @@ SourceWish wish_of(const SourceOptions& options) {
 
 Opened start(LiveSettings settings, const SourceOptions& options) {
   settings.patience = options.patience;
+  settings.late_is_welcome = options.keeps_frames;
   Result<std::unique_ptr<LiveSource>> live = LiveSource::open(std::move(settings));
   if (!live) return live.error();
   return std::unique_ptr<DepthSource>(std::move(*live));

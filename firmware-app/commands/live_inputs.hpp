@@ -13,6 +13,7 @@ namespace pliant {
 
 struct SourceOptions {
   std::optional<SensorFile> sensor;  ///< mode, camera and noise of a device; noise of other sources
+  bool keeps_frames = false;         ///< instead of acting on them: of a device, late ones are welcome
   double patience = 60;              ///< seconds that a device may be gone before it is lost for good
 };
 

@@ -73,6 +73,7 @@ class Recorder {
 int record(const RecordOptions& options) {
   const StopSignal stop;
   SourceOptions source_options;
+  source_options.keeps_frames = true;
   if (!options.sensor.empty()) {
     const Result<SensorFile> sensor = read_sensor(options.sensor);
     if (!sensor) return report(sensor.error());
@@ -85,7 +86,7 @@ int record(const RecordOptions& options) {
 
   LiveLine line;
   SourceItem item;
-  std::int64_t taken = 0, bad_frames = 0;
+  std::int64_t taken = 0, bad_frames = 0, latest = -1;
   std::string fault;
   Outcome failure = success();
   while (!StopSignal::requested() && (options.frames < 0 || taken < options.frames)) {
@@ -93,6 +94,7 @@ int record(const RecordOptions& options) {
     if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
     if (item.event == SourceEvent::timeout) continue;
     ++taken;
+    latest = item.frame.number;
     if (item.event == SourceEvent::bad_frame) {
       ++bad_frames;
       fault = item.fault;
@@ -105,7 +107,9 @@ int record(const RecordOptions& options) {
   line.clear();
   if (Outcome finished = recorder.finish(); failure && !finished) failure = finished;
   std::string summary = fmt::format("recorded {} frames to {}", recorder.frames(), options.output);
-  if (bad_frames > 0) summary += fmt::format(", left out {} bad ones", bad_frames);
+  if (bad_frames > 0) summary += fmt::format(", left out {} bad ones (the last: {})", bad_frames, fault);
+  if (source->source->live() && latest >= taken)
+    summary += fmt::format(", missed {} that were not fetched in time", latest + 1 - taken);
   if (recorder.dropped() > 0)
     summary += fmt::format(", dropped {} that the disk had no time for", recorder.dropped());
   if (!failure) {

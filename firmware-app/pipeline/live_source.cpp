@@ -144,7 +144,8 @@ void LiveSource::take(SourceItem& item, std::int64_t now) {
   }
   monitor_.judged(fault);
   monitor_.set_rate_share(judge_.rate_share());
-  if (fault == StreamFault::none || fault == StreamFault::slow) {
+  if (fault == StreamFault::none || fault == StreamFault::slow ||
+      (fault == StreamFault::delayed && settings_.late_is_welcome)) {
     sound_ns_ = useful_ns_ = alive_ns_ = now;
     monitor_.set_blind(false);
     pause_ns_ = kFirstPause;

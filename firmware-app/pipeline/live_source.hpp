@@ -17,6 +17,8 @@ struct LiveSettings {
   std::function<Result<std::unique_ptr<DepthSource>>()> open;
   /// Reset of the device's port, the last resort for one that is there and gives nothing; may be empty.
   std::function<void()> reset;
+  /// Delayed frames are passed on, to who keeps frames instead of acting on them.
+  bool late_is_welcome = false;
   std::shared_ptr<ArrivalSignal> arrivals;  ///< devices came or went; may be null
   double patience = 60;                     ///< without a usable frame before the device is lost for good
   double first_frame = 3;                   ///< for the first frame after opening

@@ -205,6 +205,18 @@ TEST(LiveSource, IsBlindWhileNoSoundFrameComes) {
   }
 }
 
+TEST(LiveSource, WhoKeepsFramesTakesLateOnesToo) {
+  Rig rig;
+  rig.settings.late_is_welcome = true;
+  rig.start();
+  rig.script.stream = Script::Stream::delayed;
+  rig.run(400);
+  EXPECT_GT(rig.frames, 5);
+  EXPECT_EQ(rig.bad, 0);
+  EXPECT_GT(rig.source->monitor()->frames(StreamFault::delayed), 3) << "counted all the same";
+  EXPECT_EQ(rig.script.openings, 1);
+}
+
 TEST(LiveSource, ALateStartOfTheProgramIsNotTheDevicesFault) {
   Rig rig;
   rig.settings.most_useless = rig.settings.first_frame = 0.1;
