@@ -95,6 +95,7 @@ Result<std::vector<OpenNi2Device>> OpenNi2Library::devices() const {
   if (const OniStatus status = api_.get_device_list(&list, &count); status != ONI_STATUS_OK)
     return fault("cannot list devices", status);
   std::vector<OpenNi2Device> devices;
+  devices.reserve(static_cast<std::size_t>(count < 0 ? 0 : count));
   for (int i = 0; i < count; ++i)
     devices.push_back({list[i].uri, list[i].vendor, list[i].name, list[i].usbVendorId, list[i].usbProductId});
   static_cast<void>(api_.release_device_list(list));

@@ -156,7 +156,7 @@ double Tracking::rate_over(double seconds) {
 
 Ended Tracking::stop() {
   kill(process_, SIGTERM);
-  const Ended ended = wait_for(process_, folder_);
+  Ended ended = wait_for(process_, folder_);
   process_ = -1;
   return ended;
 }

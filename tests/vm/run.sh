@@ -45,7 +45,8 @@ crashed=$(tr -d '\r' <"$console" | awk '/^\[ RUN / { test = $4 } /^guest: the te
 if [ -n "$complaint" ]; then die "${complaint:0:400}"; fi
 if grep -aq 'Kernel panic' "$console"; then die "the guest's kernel panicked: $(grep -am1 'Kernel panic' "$console" | tr -d '\r')"; fi
 if [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
-  die "the guest did not end within $most_seconds s; last it said: $(grep -av '^\s*$' "$console" | tail -1 | tr -d '\r')"
+  last=$(grep -av '^\s*$' "$console" 2>/dev/null | tail -1 | tr -d '\r' || true)
+  die "the guest did not end within $most_seconds s; the last that it said: ${last:-nothing}"
 fi
 [ -s "$console" ] || die "the guest did not start: $(head -1 "$folder/qemu.log")"
 die "the guest ended without a result (qemu: $status $(head -1 "$folder/qemu.log"))"
