@@ -35,6 +35,7 @@ for file in "${openni2[@]}"; do [ ! -f "$file" ] || files+=("$file"); done
 copy "${programs[@]}" "${files[@]}" /bin/busybox /bin/udevadm
 ln -s udevadm "$root/bin/udevd"
 cp "$here/../../config/60-pliant.rules" "$root/lib/udev/rules.d"
+cp /etc/passwd /etc/group "$root/etc"
 cp "$here/init.sh" "$root/init"
 chmod +x "$root/init"
 

@@ -1,12 +1,15 @@
 // A Structure Sensor on the bus, as OpenNI2's own driver (PS1080) sees it.
 #include "tests/vm/structure_sensor.hpp"
 
+#include <grp.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <thread>
 
 #include "drivers/openni2/openni2_library.hpp"
+#include "drivers/usb/usb_bus.hpp"
 #include "firmware-app/measure/clock.hpp"
 #include "tests/vm/guest.hpp"
 
@@ -58,6 +61,26 @@ TEST_F(StructureSensorTest, ADeviceThatIsGoneBeforeItIsLookedAtHarmsNothing) {
     EXPECT_EQ(run_pliant({"devices"}).code, 0);
   }
   loose_cable.join();
+}
+
+TEST_F(StructureSensorTest, OurUdevRulesGiveItToTheGroupVideo) {
+  const auto bus = UsbBus::open();
+  ASSERT_TRUE(bus) << bus.error().message;
+  const group* video = getgrnam("video");  // NOLINT(concurrency-mt-unsafe)
+  ASSERT_NE(video, nullptr);
+  ASSERT_EQ(sensor_.plug(kPort), "");
+  std::string node;
+  struct stat about {};
+  EXPECT_TRUE(wait_until(10,
+                         [&] {
+                           const auto devices = (*bus)->devices();
+                           for (const UsbDevice& device : devices ? *devices : std::vector<UsbDevice>())
+                             if (device.vendor == 0x1d27) node = device.node();
+                           return stat(node.c_str(), &about) == 0 && about.st_gid == video->gr_gid &&
+                                  (about.st_mode & 0777U) == 0660;
+                         }))
+      << node << ": group " << about.st_gid << ", mode " << std::oct << (about.st_mode & 0777U);
+  sensor_.unplug();
 }
 
 TEST_F(StructureSensorTest, DevicesNamesIt) {
