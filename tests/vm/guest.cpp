@@ -154,6 +154,13 @@ double Tracking::rate_over(double seconds) {
   return 1e6 * static_cast<double>(latest_.tracked - begin.tracked) / static_cast<double>(span);
 }
 
+double Tracking::rate_within(double seconds) {
+  const std::int64_t end = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
+  double most = 0;
+  while (most < kLeastRate && monotonic_ns() < end && !ended()) most = std::max(most, rate_over(5));
+  return most;
+}
+
 Ended Tracking::stop() {
   kill(process_, SIGTERM);
   Ended ended = wait_for(process_, folder_);

@@ -61,8 +61,9 @@ class Tracking {
   /// How far the base region is from where the object was in that picture, in the median over all frames
   /// heard so far, metres; for a source whose frame numbers count the pictures from the first.
   [[nodiscard]] double median_error() const;
-  /// Frames tracked in each second of the next `seconds`.
-  [[nodiscard]] double rate_over(double seconds);
+  /// Frames tracked in a second, over the first five seconds in which they are kLeastRate; the most there
+  /// were where that takes longer than `seconds`: other work on this machine may hold the guest up.
+  [[nodiscard]] double rate_within(double seconds);
   /// Asks the program to end.
   [[nodiscard]] Ended stop();
   /// Everything known, for a failure's message.
@@ -70,6 +71,7 @@ class Tracking {
 
  private:
   [[nodiscard]] bool ended();
+  [[nodiscard]] double rate_over(double seconds);
 
   std::filesystem::path folder_;
   std::unique_ptr<LcmSubscriber> subscriber_;
