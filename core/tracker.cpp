@@ -55,6 +55,7 @@ void TrackerState::lay_out(Workspace& workspace, const ModelView& model_view,
   taken_pixels = workspace.take<std::uint32_t>((pixels + 31) / 32);
   positions = workspace.take<Point3f>(count);
   residuals = workspace.take<float>(count);
+  strains = workspace.take<float>(count);
   detector.lay_out(workspace, model_view, intrinsics, DetectSettings());
 }
 
@@ -125,6 +126,7 @@ const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
     regroup_outliers(s);  // the same again on the outliers: a chain of rigid transforms
     done(s, Stage::regroup);
     match_deformed(s);  // what is left: a radius search
+    weigh_strain(s);
     done(s, Stage::deform);
     tracked = judge(s);
     s.frames_failed = tracked ? 0 : s.frames_failed + 1;

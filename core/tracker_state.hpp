@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/camera/surface.hpp"
-#include "core/deform/patch_warp.hpp"
+#include "core/deform/strain.hpp"
 #include "core/detect/frame_detector.hpp"
 #include "core/track/label.hpp"
 #include "core/track/regroup.hpp"
@@ -30,7 +30,7 @@ struct TrackerState {
   FrameDetector detector;
   std::span<std::uint32_t> taken_pixels;
   std::span<Point3f> positions;
-  std::span<float> residuals;
+  std::span<float> residuals, strains;
 
   // The object.
   RegionSet regions;
@@ -38,6 +38,7 @@ struct TrackerState {
   std::array<RigidTransform, kMaxPatches> patches_before;  // likewise
   RegroupState regroup_state;
   PatchWarp warp;
+  Strain strain;
   SightCounts counts;
   bool following = false;     // regions hold a pose to go on from
   bool was_tracked = false;   // ever
@@ -59,6 +60,8 @@ void warp_surface(TrackerState& s) noexcept;
 void label_points(TrackerState& s) noexcept;
 void regroup_outliers(TrackerState& s) noexcept;
 void match_deformed(TrackerState& s) noexcept;
+/// What the springs say of the warp: how far the surface is strained.
+void weigh_strain(TrackerState& s) noexcept;
 /// True when what is seen bears the pose out. Sets confidence.
 [[nodiscard]] bool judge(TrackerState& s) noexcept;
 

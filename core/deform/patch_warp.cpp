@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "core/deform/strain.hpp"
 #include "core/track/aside.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/steady.hpp"
 
 namespace pliant {
 
@@ -23,11 +25,10 @@ struct Stiffness {
   double stretch = 0, bend = 0;  // of one crossing edge
 };
 
-/// An edge that crosses a border gives by `strain` of its length, or bends by `turn`, where a reading is off
-/// by its noise. The soft end stretches like fleece, the stiff end like leather.
-Stiffness stiffness_of(const ModelTables& model, double noise, double material) noexcept {
-  const double strain = 0.1 + 0.4 * material, turn = 0.1 + 0.4 * material;
-  const double give = strain * model.spacing / kUnitsPerMetre;
+/// A border gives by the material's limit, or bends by it, where a reading is off by its noise. What the
+/// surface stretches between the centres of two rigid patches opens at their border.
+Stiffness stiffness_of(const PatchTables& patches, double noise, double material) noexcept {
+  const double give = strain_limit(material) * patches.pitch(), turn = bend_limit(material);
   return {noise * noise / (give * give), noise * noise / (turn * turn)};
 }
 
@@ -233,11 +234,12 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   }
   const std::int32_t z = depth_of(regions[0].pose, model.centre);
   const double noise = surface.sigma(z) / kUnitsPerMetre, limit = tolerance.deformed(z) / kUnitsPerMetre;
-  const Stiffness stiffness = stiffness_of(model, noise, settings.material);
+  const Stiffness stiffness = stiffness_of(patches, noise, settings.material);
   Look look{model, patches, surface, projector, {}, 1};
   Gates& gates = look.gates;
   gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
+  const std::array<RigidTransform, kMaxPatches> before = warp.pose;
   return_home(look, regions, points, noise, warp);
   for (int round = 0; round < settings.rounds; ++round) {
     for (std::size_t p = 0; p < patches.count; ++p) warp.moments[p] = PlaneMoments();
@@ -261,6 +263,9 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
     gates.inward = std::max(gates.inward * 3 / 4, 2 * tolerance.deformed(z));
     gates.outward = std::max(gates.outward * 3 / 4, 2 * tolerance.deformed(z));
   }
+  for (std::size_t p = 0; p < patches.count; ++p)
+    warp.pose[p] =
+        steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius, kNoiseOfPose * noise);
   place(model, patches, warp);
 }
 

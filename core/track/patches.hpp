@@ -53,6 +53,8 @@ struct PatchTables {
   std::size_t border_count = 0;  ///< at most kMaxBorders; further ones hold nothing together
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
+  /// Mean distance between the centres of neighbouring patches, metres: of discs laid as in a honeycomb.
+  [[nodiscard]] double pitch() const noexcept { return 1.9 * radius; }
   /// `queue`: scratch of the model's size.
   void start(const ModelTables& model, std::span<std::uint16_t> queue) noexcept;
 };
