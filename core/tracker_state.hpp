@@ -11,6 +11,13 @@
 
 namespace pliant {
 
+/// How the search for the object goes.
+enum class SearchState : std::uint8_t {
+  idle,     ///< the next frame begins one
+  working,  ///< the detector is at work on a frame
+  found     ///< its answer waits for the next frame
+};
+
 struct TrackerState {
   // What start() was given.
   ModelView model;
@@ -40,10 +47,11 @@ struct TrackerState {
   PatchWarp warp;
   Strain strain;
   SightCounts counts;
-  bool following = false;     // regions hold a pose to go on from
-  bool was_tracked = false;   // ever
-  bool search_begun = false;  // the detector is at work on a frame
-  int frames_failed = 0;      // in a row, while following
+  bool following = false;    // regions hold a pose to go on from
+  bool was_tracked = false;  // ever
+  bool just_lost = false;    // regions hold the pose at which it was lost: a hint where to search
+  SearchState search = SearchState::idle;
+  int frames_failed = 0;  // in a row, while following
   double confidence = 0;
 
   std::array<Region, limits::kMaxRegions> published{};
