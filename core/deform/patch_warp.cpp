@@ -119,18 +119,6 @@ void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoin
   }
 }
 
-void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
-  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
-                   kResidual = 1 / 256000.0;
-  std::size_t k = 0;
-  for (std::size_t row = 0; row < 6; ++row) {
-    const double unit_row = row < 3 ? kArm : kNormal;
-    for (std::size_t column = row; column < 6; ++column)
-      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
-    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
-  }
-}
-
 /// Weight of a spring that gives way beyond `scale`.
 double giving_way(double square, double scale) noexcept {
   const double w = scale * scale / (scale * scale + square);
@@ -174,10 +162,35 @@ void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWa
   }
 }
 
+void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
+  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
+                   kResidual = 1 / 256000.0;
+  std::size_t k = 0;
+  for (std::size_t row = 0; row < 6; ++row) {
+    const double unit_row = row < 3 ? kArm : kNormal;
+    for (std::size_t column = row; column < 6; ++column)
+      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
+    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
+  }
+}
+
+/// By how much the sum of squares falls when the patch follows its readings as far as a held one may.
+double gain_of(const PatchTables& patches, const PlaneMoments& moments, std::size_t p) noexcept {
+  Symmetric6 a;
+  Vector6 b = Vector6::Zero();
+  add_readings(moments, a, b);
+  const double hold = kHoldShare * patches.sizes[p];
+  a.add_shift_spring(hold);
+  a.add_turn_spring(hold * 0.5 * patches.radius * patches.radius);
+  Factor6 factor;
+  return factor.factorise(a) ? b.dot(factor.solve(b)) : 0;
+}
+
 /// How well readings fit a patch.
 struct Fit {
   double weight = 0;  // of readings
   double square = 0;  // mean residual squared, metres squared
+  double gain = 0;    // by how much the patch's own motion would lower the sum of squares
 };
 
 void measure(const Look& look, const PointState& points, const Chosen& chosen, PatchWarp& warp,
@@ -190,7 +203,8 @@ void measure(const Look& look, const PointState& points, const Chosen& chosen, P
     if (!chosen[p]) continue;
     const PlaneMoments& m = warp.moments[p];
     const auto weight = static_cast<double>(m.weight);
-    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0};
+    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0,
+               gain_of(look.patches, m, p)};
   }
 }
 
@@ -201,8 +215,10 @@ constexpr double kByChance = 1.4;
 
 /// Nearer than this share of that, a patch is where its region is.
 constexpr double kAtHome = 0.25;
-/// Readings farther off than this many times that in the root mean square pull a patch away.
-constexpr double kRestless = 1.5;
+/// By chance, the six freedoms of a patch lower the sum of its squared residuals by six times σ² where edges,
+/// which are not smoothed, hold it; neighbouring readings share their noise, hence twice. What they lower by
+/// more pulls a patch away.
+constexpr double kByChanceFreely = 12;
 
 /// Patches that the readings put as well where their region is go back there: what slid along the surface
 /// unnoticed does not add up over the frames. Not so beside a patch that must be elsewhere: what moves takes
@@ -238,14 +254,14 @@ Chosen return_home(const Look& look, const RegionSet& regions, const PointState&
         warp.held[p] = fits[q];
     if (!warp.held[p]) warp.pose[p] = own[p];
     const Fit& now = warp.held[p] ? home[p] : here[p];
-    astray[p] = (astray[p] && !warp.held[p]) || now.square > kRestless * kRestless * smoothed * smoothed;
+    astray[p] = (astray[p] && !warp.held[p]) || now.gain > kByChanceFreely * noise * noise;
   }
   return astray;
 }
 
 /// Springs carry what moves no farther than this many patches into what stands where its region is: at each
 /// the anchors take the larger part.
-constexpr int kReachOfSprings = 3;
+constexpr int kReachOfSprings = 2;
 
 /// The patches that may move off their regions: those that are off them, and what their springs reach.
 Chosen moving_patches(const PatchTables& patches, const Chosen& astray) noexcept {
