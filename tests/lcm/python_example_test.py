@@ -137,8 +137,10 @@ class PythonExample(unittest.TestCase):
         self.assertEqual(len(lines), 3, run.stdout)
         self.assertIn("frame 7 tracking", lines[0])
         self.assertIn("1 deformed, 1 not observed", lines[0])
-        self.assertIn("moved up to 1000.0 mm", lines[1])
+        self.assertIn("[0: 100 points, rms 250.00 mm, 1: 101 points, rms 250.00 mm at +0.500 +0.250 +0.750]", lines[0])
+        self.assertIn("moved up to 1000.0 mm, strained up to 12.5 %", lines[1])
         self.assertIn("30.0 frames/s", lines[2])
+        self.assertIn("strain energy 0.500", lines[2])
 
 
 if __name__ == "__main__":
