@@ -69,6 +69,7 @@ bool ElasticSystem::solve(int iterations) noexcept {
     const std::size_t p = moving_[m];
     for (std::size_t k = 0; k < 21; ++k) block_[p].a[k] += own_[p].a[k];
     if (!factor_[p].factorise(block_[p])) return false;
+    x_[p] = Vector6::Zero();
     residual_[p] = force_[p];
     direction_[p] = factor_[p].solve(force_[p]);
   }

@@ -261,7 +261,7 @@ Chosen return_home(const Look& look, const RegionSet& regions, const PointState&
 
 /// Springs carry what moves no farther than this many patches into what stands where its region is: at each
 /// the anchors take the larger part.
-constexpr int kReachOfSprings = 2;
+constexpr int kReachOfSprings = 3;
 
 /// The patches that may move off their regions: those that are off them, and what their springs reach.
 Chosen moving_patches(const PatchTables& patches, const Chosen& astray) noexcept {

@@ -136,18 +136,6 @@ IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) no
           r.z + (w.z - r.z) * share / whole};
 }
 
-/// What of the step from the last offset to this one noise does not explain: s² / (s² + noise²) of it, as
-/// steadied() does for poses. 1/16 mm.
-IntPoint steady_offset(const IntPoint& last, const IntPoint& now, std::int32_t noise) noexcept {
-  const std::int64_t x = now.x - last.x, y = now.y - last.y, z = now.z - last.z;
-  const std::int64_t square = x * x + y * y + z * z;
-  if (square == 0) return now;
-  const std::int64_t whole = square + static_cast<std::int64_t>(noise) * noise;
-  return {last.x + static_cast<std::int32_t>(x * square / whole),
-          last.y + static_cast<std::int32_t>(y * square / whole),
-          last.z + static_cast<std::int32_t>(z * square / whole)};
-}
-
 }  // namespace
 
 SightCounts label(const LabelContext& context, const RegionSet& regions, PointState& points) noexcept {
@@ -201,12 +189,10 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
     points.sight[i] = sight;
     points.residual[i] = points.label[i] == kDeformed ? 0 : verdict.look.residual;
     points.match[i] = sight == Sight::agrees ? verdict.look.match : -1;
+    points.position[i] = place(verdict, points.label[i], limit);
     const IntPoint& r = verdict.rigid;
-    const IntPoint at = place(verdict, points.label[i], limit);
-    points.offset[i] =
-        steady_offset(points.offset[i], {at.x - r.x, at.y - r.y, at.z - r.z}, context.surface.sigma(r.z) / 2);
-    const IntPoint& o = points.offset[i];
-    points.position[i] = {r.x + o.x, r.y + o.y, r.z + o.z};
+    const IntPoint& at = points.position[i];
+    points.offset[i] = {at.x - r.x, at.y - r.y, at.z - r.z};
   }
   return counts;
 }
