@@ -56,8 +56,8 @@ struct TrackResult {
   std::span<const std::int8_t> labels;    ///< region id, kDeformed or kNotObserved
   std::span<const std::int32_t> matches;  ///< pixel v * width + u, -1 none
   std::span<const float> residuals;       ///< distance to the matched reading, metres; 0 without a match
-  std::span<const float> strains;  ///< root mean square change in length of the surface around a deformed
-                                   ///< point, as a share of the length; 0 for other points
+  std::span<const float> strains;  ///< relative change in length of the surface around a deformed point, root
+                                   ///< mean square over its directions; 0 for other points
   float strain_energy = 0;         ///< Strain::energy (core/deform/strain.hpp); 0 unless tracking
 };
 

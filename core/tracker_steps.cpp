@@ -228,7 +228,7 @@ void publish_tracked(TrackerState& s) noexcept {
                       static_cast<float>(p.z) * kMetres};
     s.residuals[i] =
         s.points.match[i] < 0 ? 0.0F : static_cast<float>(std::abs(s.points.residual[i])) * kMetres;
-    s.strains[i] = s.points.label[i] == kDeformed ? strain_at(s.tables, s.patches, s.warp, i) : 0.0F;
+    s.strains[i] = s.points.label[i] == kDeformed ? strain_at(s.patches, s.strain, i) : 0.0F;
   }
   r.regions = {s.published.data(), count};
   r.positions = s.positions;

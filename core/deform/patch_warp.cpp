@@ -22,16 +22,20 @@ constexpr double kHoldShare = 0.5;
 /// to keep patches together that nobody sees.
 constexpr double kJointShare = 0.01;
 
-struct Stiffness {
-  double stretch = 0, bend = 0;  // of one crossing edge
-};
+/// What the springs are measured by.
+struct Material {
+  double noise = 0;   // of a reading, metres
+  double strain = 0;  // a border gives by this share of the distance that it bridges,
+  double bend = 0;    // or by this angle, where a reading is off by its noise
 
-/// A border gives by the material's limit, or bends by it, where a reading is off by its noise. What the
-/// surface stretches between the centres of two rigid patches opens at their border.
-Stiffness stiffness_of(const PatchTables& patches, double noise, double material) noexcept {
-  const double give = strain_limit(material) * patches.pitch(), turn = bend_limit(material);
-  return {noise * noise / (give * give), noise * noise / (turn * turn)};
-}
+  [[nodiscard]] double stretch_stiffness(const PatchBorder& border) const noexcept {
+    const double give = strain * border.length;
+    return border.edges * noise * noise / (give * give);
+  }
+  [[nodiscard]] double bend_stiffness(const PatchBorder& border) const noexcept {
+    return border.edges * noise * noise / (bend * bend);
+  }
+};
 
 void find_homes(const PatchTables& patches, const PointState& points, PatchWarp& warp) noexcept {
   std::array<std::array<std::uint16_t, limits::kMaxRegions>, kMaxPatches> counts{};
@@ -141,7 +145,7 @@ void add_anchor(const PatchTables& patches, const RigidTransform& region, double
 /// Joints turn far where the rest of the surface barely bends: bending gives way.
 constexpr double kFreeTurn = 0.5;  // radians
 
-void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWarp& warp) noexcept {
+void add_borders(const PatchTables& patches, const Material& material, PatchWarp& warp) noexcept {
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
     const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
@@ -150,8 +154,8 @@ void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWa
     ElasticLink link;
     link.a = border.a;
     link.b = border.b;
-    link.stretch = stiffness.stretch * border.edges;
-    link.bend = stiffness.bend * border.edges * giving_way(turn.squaredNorm(), kFreeTurn);
+    link.stretch = material.stretch_stiffness(border);
+    link.bend = material.bend_stiffness(border) * giving_way(turn.squaredNorm(), kFreeTurn);
     if (warp.home[border.a] != warp.home[border.b]) {
       link.stretch *= kJointShare;
       link.bend *= kJointShare;
@@ -278,7 +282,7 @@ Chosen moving_patches(const PatchTables& patches, const Chosen& astray) noexcept
 
 /// One balance of readings, anchors and springs. False when there is none.
 bool balance(const Look& look, const RegionSet& regions, const PointState& points, const Chosen& moving,
-             const Stiffness& stiffness, double limit, int iterations, PatchWarp& warp) noexcept {
+             const Material& material, double limit, int iterations, PatchWarp& warp) noexcept {
   const std::size_t count = look.patches.count;
   for (std::size_t p = 0; p < count; ++p)
     if (moving[p]) warp.moments[p] = PlaneMoments();
@@ -294,7 +298,7 @@ bool balance(const Look& look, const RegionSet& regions, const PointState& point
     warp.seen[p] = static_cast<double>(warp.moments[p].weight) / 256;
     add_anchor(look.patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
   }
-  add_borders(look.patches, stiffness, warp);
+  add_borders(look.patches, material, warp);
   if (!warp.system.solve(iterations)) return false;
   for (std::size_t p = 0; p < count; ++p) {
     const Vector6& x = warp.system.motion(p);
@@ -319,7 +323,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   }
   const std::int32_t z = depth_of(regions[0].pose, model.centre);
   const double noise = surface.sigma(z) / kUnitsPerMetre, limit = tolerance.deformed(z) / kUnitsPerMetre;
-  const Stiffness stiffness = stiffness_of(patches, noise, settings.material);
+  const Material material{noise, strain_limit(settings.material), bend_limit(settings.material)};
   Look look{model, patches, surface, projector, {}, 1};
   Gates& gates = look.gates;
   gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
@@ -328,7 +332,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   const Chosen moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
   for (int round = 0; round < settings.rounds; ++round) {
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
-    if (!balance(look, regions, points, moving, stiffness, limit, settings.iterations, warp)) break;
+    if (!balance(look, regions, points, moving, material, limit, settings.iterations, warp)) break;
     // the nearer the patches are, the less a reading far off has to do with them
     gates.inward = std::max(gates.inward * 3 / 4, 2 * tolerance.deformed(z));
     gates.outward = std::max(gates.outward * 3 / 4, 2 * tolerance.deformed(z));

@@ -2,53 +2,47 @@
 
 #include <cmath>
 
-#include "core/geometry/rigid_transform.hpp"
-
 namespace pliant {
 
-namespace {
-
-double distance(const IntPoint& a, const IntPoint& b) noexcept {
-  const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return std::sqrt(x * x + y * y + z * z);
-}
-
-IntPoint at_rest(const ModelTables& model, std::size_t i) noexcept {
-  return {model.x[i], model.y[i], model.z[i]};
-}
-
-}  // namespace
-
 Strain measure_strain(const PatchTables& patches, const PatchWarp& warp, double material) noexcept {
-  const double give = strain_limit(material) * patches.pitch(), turn_limit = bend_limit(material);
-  double energy = 0, over = 0, edges = 0;
+  const double limit = strain_limit(material), turn_limit = bend_limit(material);
+  Strain out;
+  double edges = 0;
+  std::array<double, kMaxPatches> squares{};
+  std::array<int, kMaxPatches> counts{};
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
-    if (warp.home[border.a] != warp.home[border.b]) continue;
+    if (!(border.length > 0)) continue;
     const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
+    const double now = (a * patches.centres[border.a] - b * patches.centres[border.b]).norm();
+    const double change = now / border.length - 1;
+    for (const std::uint8_t p : {border.a, border.b}) {
+      squares[p] += change * change;
+      ++counts[p];
+    }
+    if (warp.home[border.a] != warp.home[border.b]) continue;
+    const double give = limit * border.length;
     const double stretch = (a * border.centre - b * border.centre).squaredNorm() / (give * give);
     const double bend = turn_between(a.rotation, b.rotation).squaredNorm() / (turn_limit * turn_limit);
-    energy += border.edges * (stretch + bend);
-    if (stretch > 1) over += border.edges;
+    out.energy += border.edges * (stretch + bend);
+    if (stretch > 1) out.overstrained += border.edges;
     edges += border.edges;
   }
-  return edges > 0 ? Strain{energy / edges, over / edges} : Strain{};
+  if (edges > 0) {
+    out.energy /= edges;
+    out.overstrained /= edges;
+  }
+  for (std::size_t p = 0; p < patches.count; ++p)
+    if (counts[p] > 0) out.patch[p] = static_cast<float>(std::sqrt(squares[p] / counts[p]));
+  return out;
 }
 
-float strain_at(const ModelTables& model, const PatchTables& patches, const PatchWarp& warp,
-                std::size_t i) noexcept {
-  const IntPoint now = warped_point(model, patches, warp, i), rest = at_rest(model, i);
-  double sum = 0;
-  int edges = 0;
-  for (const std::uint16_t n : model.model->neighbours(i)) {
-    if (n >= model.size) continue;
-    const double length = distance(at_rest(model, n), rest);
-    if (!(length > 0)) continue;
-    const double change = distance(warped_point(model, patches, warp, n), now) / length - 1;
-    sum += change * change;
-    ++edges;
-  }
-  return edges > 0 ? static_cast<float>(std::sqrt(sum / edges)) : 0.0F;
+float strain_at(const PatchTables& patches, const Strain& strain, std::size_t i) noexcept {
+  const PointBlend& blend = patches.blend[i];
+  float sum = 0;
+  for (std::size_t j = 0; j < blend.patch.size(); ++j)
+    sum += static_cast<float>(blend.weight[j]) * strain.patch[blend.patch[j]];
+  return sum / static_cast<float>(1 << PointBlend::kShift);
 }
 
 bool find_joint(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, std::int8_t parent,

@@ -18,17 +18,17 @@ namespace pliant {
 struct Strain {
   double energy = 0;  ///< mean over the surface of (strain / limit)² + (bend / limit)²: 1 where all of it
                       ///< is stretched to the material's limit; joints between regions turn freely
-  double overstrained = 0;  ///< share of the surface that is stretched beyond the limit [0, 1]
+  double overstrained = 0;                 ///< share of the surface that is stretched beyond the limit [0, 1]
+  std::array<float, kMaxPatches> patch{};  ///< of each patch: root mean square of the relative change of its
+                                           ///< centre's distances to its neighbours' centres
 };
 
 /// Of the warp as it is.
 [[nodiscard]] Strain measure_strain(const PatchTables& patches, const PatchWarp& warp,
                                     double material) noexcept;
 
-/// Root mean square of the relative change in length of the surface edges from point i under the warp;
-/// 0 where nothing stretches.
-[[nodiscard]] float strain_at(const ModelTables& model, const PatchTables& patches, const PatchWarp& warp,
-                              std::size_t i) noexcept;
+/// Of the surface around point i: the blend of its patches' strains; 0 where nothing stretches.
+[[nodiscard]] float strain_at(const PatchTables& patches, const Strain& strain, std::size_t i) noexcept;
 
 /// Where region k hangs on `parent`: the middle of the border between them, model frame, metres. False where
 /// they do not touch.

@@ -30,6 +30,7 @@ struct PatchBorder {
   std::uint8_t a = 0, b = 0;
   std::uint32_t edges = 0;           ///< of the surface graph that cross it
   Vector3 centre = Vector3::Zero();  ///< model frame, metres
+  double length = 0;                 ///< from one patch's centre to the other's, metres
 };
 
 /// The patches that a point moves with when the surface bends.
@@ -53,8 +54,6 @@ struct PatchTables {
   std::size_t border_count = 0;  ///< at most kMaxBorders; further ones hold nothing together
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
-  /// Mean distance between the centres of neighbouring patches, metres: of discs laid as in a honeycomb.
-  [[nodiscard]] double pitch() const noexcept { return 1.9 * radius; }
   /// `queue`: scratch of the model's size.
   void start(const ModelTables& model, std::span<std::uint16_t> queue) noexcept;
 };
