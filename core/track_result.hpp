@@ -27,6 +27,8 @@ struct Region {
   float rms = 0;             ///< of their distances to the surface, metres
   float confidence = 0;      ///< [0, 1]
   RigidTransform pose;       ///< camera <- model, metres
+  Point3f joint;  ///< where it hangs on its parent, camera frame, metres; not a number for the base and where
+                  ///< the two do not touch
 };
 
 /// The steps of a frame, for time profiles.
@@ -54,6 +56,9 @@ struct TrackResult {
   std::span<const std::int8_t> labels;    ///< region id, kDeformed or kNotObserved
   std::span<const std::int32_t> matches;  ///< pixel v * width + u, -1 none
   std::span<const float> residuals;       ///< distance to the matched reading, metres; 0 without a match
+  std::span<const float> strains;  ///< relative change in length of the surface around a deformed point, root
+                                   ///< mean square over its directions; 0 for other points
+  float strain_energy = 0;         ///< Strain::energy (core/deform/strain.hpp); 0 unless tracking
 };
 
 }  // namespace pliant

@@ -12,8 +12,14 @@ namespace {
 /// meanwhile.
 constexpr int kFramesToReturn = 5;
 
-/// Work of the detector in one frame, in its units of about 1000 instructions.
-constexpr std::int64_t kSearchBudget = 120000;
+/// Work of the detector in one frame, in its units of about 1000 instructions: with the surface of a whole
+/// picture about as much as two tracked frames.
+constexpr std::int64_t kSearchBudget = 56000;
+/// Pixels of whose surface one unit takes care.
+constexpr std::int64_t kPixelsEach = 40;
+
+/// How far from its last place a lost object is looked for first: where a hand carries it in half a second.
+constexpr double kHintRadius = 0.4;
 
 struct alignas(Workspace::kAlignment) StateStorage {
   std::byte bytes[sizeof(TrackerState)];
@@ -28,17 +34,30 @@ bool usable(const TrackerState& s, const DepthFrame& frame) noexcept {
          frame.stride >= frame.width;
 }
 
-/// Searches in bounded slices; the answer is for an earlier frame and is brought forward to this one.
+/// Searches in bounded slices, one a frame: first around the last place, then everywhere. The answer is for
+/// an earlier frame; the frame after the last slice brings it forward to itself.
 bool search(TrackerState& s, const DepthFrame& frame) noexcept {
-  if (!s.search_begun) {
-    s.surface.build(frame, {0, 0, s.camera.width, s.camera.height});
-    s.detector.begin(s.surface);
-    s.search_begun = true;
+  if (s.search == SearchState::found) {
+    s.search = SearchState::idle;
+    return acquire(s, frame, s.detector.best().pose);
   }
-  const DetectState progress = s.detector.step(kSearchBudget);
-  if (progress == DetectState::working) return false;
-  s.search_begun = false;
-  return progress == DetectState::found && acquire(s, frame, s.detector.best().pose);
+  std::int64_t budget = kSearchBudget;
+  if (s.search == SearchState::idle) {
+    budget -= static_cast<std::int64_t>(s.camera.width) * s.camera.height / kPixelsEach;
+    s.surface.build(frame, {0, 0, s.camera.width, s.camera.height});
+    if (s.just_lost)
+      s.detector.begin(s.surface, s.regions[0].pose, kHintRadius);
+    else
+      s.detector.begin(s.surface);
+    s.just_lost = false;
+    s.search = SearchState::working;
+  }
+  const DetectState progress = s.detector.step(budget);
+  if (progress == DetectState::found)
+    s.search = SearchState::found;
+  else if (progress != DetectState::working)
+    s.search = SearchState::idle;
+  return false;
 }
 
 }  // namespace
@@ -55,7 +74,10 @@ void TrackerState::lay_out(Workspace& workspace, const ModelView& model_view,
   taken_pixels = workspace.take<std::uint32_t>((pixels + 31) / 32);
   positions = workspace.take<Point3f>(count);
   residuals = workspace.take<float>(count);
-  detector.lay_out(workspace, model_view, intrinsics, DetectSettings());
+  strains = workspace.take<float>(count);
+  DetectSettings detect;
+  detect.rounds = 1;  // a new picture is worth more than further keypoints of an old one
+  detector.lay_out(workspace, model_view, intrinsics, detect);
 }
 
 std::size_t Tracker::workspace_bytes(const ModelView& model, const Intrinsics& camera,
@@ -125,11 +147,15 @@ const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
     regroup_outliers(s);  // the same again on the outliers: a chain of rigid transforms
     done(s, Stage::regroup);
     match_deformed(s);  // what is left: a radius search
+    weigh_strain(s);
     done(s, Stage::deform);
     tracked = judge(s);
     s.frames_failed = tracked ? 0 : s.frames_failed + 1;
     if (!tracked) return_to_last_frame(s);
-    if (s.frames_failed > kFramesToReturn) s.following = false;
+    if (s.frames_failed > kFramesToReturn) {
+      s.following = false;
+      s.just_lost = true;
+    }
   } else {
     tracked = search(s, frame);
     done(s, Stage::detect);
@@ -157,13 +183,14 @@ void Tracker::start_from(const RigidTransform& pose) noexcept {
   base.pose = base.last_pose = base.predicted = pose;
   s.warp.reset(pose);
   s.following = true;
-  s.search_begun = false;
+  s.search = SearchState::idle;
   s.frames_failed = 0;
 }
 
 void Tracker::reset() noexcept {
   state_->following = false;
-  state_->search_begun = false;
+  state_->search = SearchState::idle;
+  state_->just_lost = false;
   state_->was_tracked = false;
 }
 

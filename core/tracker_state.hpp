@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/camera/surface.hpp"
-#include "core/deform/patch_warp.hpp"
+#include "core/deform/strain.hpp"
 #include "core/detect/frame_detector.hpp"
 #include "core/track/label.hpp"
 #include "core/track/regroup.hpp"
@@ -10,6 +10,13 @@
 #include "core/tracker.hpp"
 
 namespace pliant {
+
+/// How the search for the object goes.
+enum class SearchState : std::uint8_t {
+  idle,     ///< the next frame begins one
+  working,  ///< the detector is at work on a frame
+  found     ///< its answer waits for the next frame
+};
 
 struct TrackerState {
   // What start() was given.
@@ -30,7 +37,7 @@ struct TrackerState {
   FrameDetector detector;
   std::span<std::uint32_t> taken_pixels;
   std::span<Point3f> positions;
-  std::span<float> residuals;
+  std::span<float> residuals, strains;
 
   // The object.
   RegionSet regions;
@@ -38,11 +45,13 @@ struct TrackerState {
   std::array<RigidTransform, kMaxPatches> patches_before;  // likewise
   RegroupState regroup_state;
   PatchWarp warp;
+  Strain strain;
   SightCounts counts;
-  bool following = false;     // regions hold a pose to go on from
-  bool was_tracked = false;   // ever
-  bool search_begun = false;  // the detector is at work on a frame
-  int frames_failed = 0;      // in a row, while following
+  bool following = false;    // regions hold a pose to go on from
+  bool was_tracked = false;  // ever
+  bool just_lost = false;    // regions hold the pose at which it was lost: a hint where to search
+  SearchState search = SearchState::idle;
+  int frames_failed = 0;  // in a row, while following
   double confidence = 0;
 
   std::array<Region, limits::kMaxRegions> published{};
@@ -59,6 +68,8 @@ void warp_surface(TrackerState& s) noexcept;
 void label_points(TrackerState& s) noexcept;
 void regroup_outliers(TrackerState& s) noexcept;
 void match_deformed(TrackerState& s) noexcept;
+/// What the springs say of the warp: how far the surface is strained.
+void weigh_strain(TrackerState& s) noexcept;
 /// True when what is seen bears the pose out. Sets confidence.
 [[nodiscard]] bool judge(TrackerState& s) noexcept;
 

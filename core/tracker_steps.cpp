@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "core/deform/radius_search.hpp"
 #include "core/track/align.hpp"
@@ -43,7 +44,7 @@ void round_of_alignment(TrackerState& s, std::size_t points, std::int32_t gate, 
   finish_stage(s, Stage::associate);
   AlignSettings align_settings = base;
   align_settings.widest = widest;
-  align(s.surface, align_settings, s.points, s.regions);
+  align(s.surface, align_settings, find_joints(s.patches, s.warp, s.regions), s.points, s.regions);
   finish_stage(s, Stage::align);
 }
 
@@ -135,6 +136,10 @@ void match_deformed(TrackerState& s) noexcept {
   search_deformed(s.tables, s.surface, s.projector, 2 * inlier_limit(s), s.taken_pixels, s.points);
 }
 
+void weigh_strain(TrackerState& s) noexcept {
+  s.strain = measure_strain(s.patches, s.warp, s.settings.material);
+}
+
 bool judge(TrackerState& s) noexcept {
   std::uint32_t agree = 0, deformed_matched = 0;
   for (std::size_t i = 0; i < s.tables.size; ++i) {
@@ -146,7 +151,8 @@ bool judge(TrackerState& s) noexcept {
   const std::uint32_t hidden = s.counts.behind;
   const double explained = agree + 0.5 * deformed_matched;
   const double total = explained + 0.5 * deformed_matched + seen_through + 0.25 * hidden;
-  s.confidence = total > 0 ? explained / total : 0;
+  // What the material cannot be stretched to is no shape of the object, however well it fits.
+  s.confidence = total > 0 ? explained / total * (1 - s.strain.overstrained) : 0;
   const std::uint32_t fewest = std::max(kFewestAgreeing, s.counts.facing / 16);
   return agree >= fewest && s.confidence >= 0.4 && seen_through <= agree + deformed_matched / 2;
 }
@@ -183,6 +189,7 @@ bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pos
   label_points(s);
   count_regions(s);
   match_deformed(s);
+  weigh_strain(s);
   return judge(s);
 }
 
@@ -196,13 +203,23 @@ void publish_tracked(TrackerState& s) noexcept {
   for (std::size_t k = 0; k < s.regions.size(); ++k) {
     const TrackedRegion& region = s.regions[k];
     if (!region.alive || region.points == 0) continue;
+    Vector3 joint;
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    Point3f joint_now{kNone, kNone, kNone};
+    if (region.parent >= 0 &&
+        find_joint(s.patches, s.warp, static_cast<std::int8_t>(k), region.parent, joint)) {
+      joint = region.pose * joint;
+      joint_now = {static_cast<float>(joint.x()), static_cast<float>(joint.y()),
+                   static_cast<float>(joint.z())};
+    }
     s.published[count++] = {
         static_cast<std::int8_t>(k),
         region.parent,
         region.points,
         static_cast<float>(region.rms),
         static_cast<float>(std::min(1.0, 4.0 * region.points / std::max(1U, s.counts.facing))),
-        region.pose};
+        region.pose,
+        joint_now};
   }
   constexpr float kMetres = static_cast<float>(1 / kUnitsPerMetre);
   for (std::size_t i = 0; i < s.tables.size; ++i) {
@@ -211,12 +228,15 @@ void publish_tracked(TrackerState& s) noexcept {
                       static_cast<float>(p.z) * kMetres};
     s.residuals[i] =
         s.points.match[i] < 0 ? 0.0F : static_cast<float>(std::abs(s.points.residual[i])) * kMetres;
+    s.strains[i] = s.points.label[i] == kDeformed ? strain_at(s.patches, s.strain, i) : 0.0F;
   }
   r.regions = {s.published.data(), count};
   r.positions = s.positions;
   r.labels = s.points.label;
   r.matches = s.points.match;
   r.residuals = s.residuals;
+  r.strains = s.strains;
+  r.strain_energy = static_cast<float>(s.strain.energy);
 }
 
 }  // namespace pliant

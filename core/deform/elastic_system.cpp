@@ -2,31 +2,44 @@
 
 namespace pliant {
 
+namespace {
+
+/// The end of a link at one patch: what it resists and which way it pulls.
+void add_end(double stretch, double bend, const Vector3& arm, const Vector3& pull, const Vector3& twist,
+             Symmetric6& matrix, Vector6& force) noexcept {
+  matrix.add_point_spring(stretch, arm);
+  matrix.add_turn_spring(bend);
+  force.head<3>() += arm.cross(pull) + twist;
+  force.tail<3>() += pull;
+}
+
+}  // namespace
+
 void ElasticSystem::clear(std::size_t patches) noexcept {
   count_ = patches;
   links_count_ = 0;
   for (std::size_t p = 0; p < count_; ++p) {
     own_[p] = block_[p] = Symmetric6();
-    force_[p] = Vector6::Zero();
+    force_[p] = x_[p] = Vector6::Zero();
+    held_[p] = false;
   }
 }
 
 void ElasticSystem::add_link(const ElasticLink& link, const Vector3& gap, const Vector3& turn) noexcept {
-  if (links_count_ == links_.size()) return;
-  links_[links_count_++] = link;
-  block_[link.a].add_point_spring(link.stretch, link.arm_a);
-  block_[link.b].add_point_spring(link.stretch, link.arm_b);
-  block_[link.a].add_turn_spring(link.bend);
-  block_[link.b].add_turn_spring(link.bend);
+  const bool both = !held_[link.a] && !held_[link.b];
+  if ((held_[link.a] && held_[link.b]) || (both && links_count_ == links_.size())) return;
+  if (both) links_[links_count_++] = link;
+  // To the other end a held patch is a wall.
   const Vector3 pull = link.stretch * gap, twist = link.bend * turn;
-  force_[link.a].head<3>() -= link.arm_a.cross(pull) + twist;
-  force_[link.a].tail<3>() -= pull;
-  force_[link.b].head<3>() += link.arm_b.cross(pull) + twist;
-  force_[link.b].tail<3>() += pull;
+  if (!held_[link.a])
+    add_end(link.stretch, link.bend, link.arm_a, -pull, -twist, (both ? block_ : own_)[link.a],
+            force_[link.a]);
+  if (!held_[link.b])
+    add_end(link.stretch, link.bend, link.arm_b, pull, twist, (both ? block_ : own_)[link.b], force_[link.b]);
 }
 
 void ElasticSystem::multiply(const Vectors& x, Vectors& y) const noexcept {
-  for (std::size_t p = 0; p < count_; ++p) y[p] = own_[p] * x[p];
+  for (std::size_t m = 0; m < moving_count_; ++m) y[moving_[m]] = own_[moving_[m]] * x[moving_[m]];
   for (std::size_t l = 0; l < links_count_; ++l) {
     const ElasticLink& link = links_[l];
     const Vector6 &xa = x[link.a], &xb = x[link.b];
@@ -43,13 +56,17 @@ void ElasticSystem::multiply(const Vectors& x, Vectors& y) const noexcept {
 
 double ElasticSystem::dot(const Vectors& x, const Vectors& y) const noexcept {
   double sum = 0;
-  for (std::size_t p = 0; p < count_; ++p)
-    for (int i = 0; i < 6; ++i) sum += x[p][i] * y[p][i];
+  for (std::size_t m = 0; m < moving_count_; ++m)
+    for (int i = 0; i < 6; ++i) sum += x[moving_[m]][i] * y[moving_[m]][i];
   return sum;
 }
 
 bool ElasticSystem::solve(int iterations) noexcept {
-  for (std::size_t p = 0; p < count_; ++p) {
+  moving_count_ = 0;
+  for (std::size_t p = 0; p < count_; ++p)
+    if (!held_[p]) moving_[moving_count_++] = static_cast<std::uint8_t>(p);
+  for (std::size_t m = 0; m < moving_count_; ++m) {
+    const std::size_t p = moving_[m];
     for (std::size_t k = 0; k < 21; ++k) block_[p].a[k] += own_[p].a[k];
     if (!factor_[p].factorise(block_[p])) return false;
     x_[p] = Vector6::Zero();
@@ -62,7 +79,8 @@ bool ElasticSystem::solve(int iterations) noexcept {
     const double curvature = dot(direction_, scratch_);
     if (!(curvature > 1e-30) || !(along > 1e-30)) break;
     const double step = along / curvature;
-    for (std::size_t p = 0; p < count_; ++p) {
+    for (std::size_t m = 0; m < moving_count_; ++m) {
+      const std::size_t p = moving_[m];
       x_[p] += step * direction_[p];
       residual_[p] -= step * scratch_[p];
       scratch_[p] = factor_[p].solve(residual_[p]);
@@ -70,7 +88,8 @@ bool ElasticSystem::solve(int iterations) noexcept {
     const double next = dot(residual_, scratch_);
     const double keep = next / along;
     along = next;
-    for (std::size_t p = 0; p < count_; ++p) direction_[p] = scratch_[p] + keep * direction_[p];
+    for (std::size_t m = 0; m < moving_count_; ++m)
+      direction_[moving_[m]] = scratch_[moving_[m]] + keep * direction_[moving_[m]];
   }
   return true;
 }

@@ -24,6 +24,8 @@ struct ElasticLink {
 class ElasticSystem {
  public:
   void clear(std::size_t patches) noexcept;
+  /// Patch p stays where it is: what its links pull at is the rest. After clear(), before the links.
+  void hold(std::size_t p) noexcept { held_[p] = true; }
 
   /// Own forces of patch p: readings and what anchors it.
   [[nodiscard]] Symmetric6& own(std::size_t p) noexcept { return own_[p]; }
@@ -40,7 +42,9 @@ class ElasticSystem {
   void multiply(const Vectors& x, Vectors& y) const noexcept;
   [[nodiscard]] double dot(const Vectors& x, const Vectors& y) const noexcept;
 
-  std::size_t count_ = 0, links_count_ = 0;
+  std::size_t count_ = 0, links_count_ = 0, moving_count_ = 0;
+  std::array<bool, kMaxPatches> held_{};
+  std::array<std::uint8_t, kMaxPatches> moving_{};  // those that are not held, ascending
   std::array<ElasticLink, kMaxBorders> links_;
   std::array<Symmetric6, kMaxPatches> own_, block_;
   std::array<Factor6, kMaxPatches> factor_;

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include "core/deform/strain.hpp"
 #include "core/track/aside.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/part_search.hpp"
+#include "core/track/steady.hpp"
 
 namespace pliant {
 
@@ -19,17 +22,20 @@ constexpr double kHoldShare = 0.5;
 /// to keep patches together that nobody sees.
 constexpr double kJointShare = 0.01;
 
-struct Stiffness {
-  double stretch = 0, bend = 0;  // of one crossing edge
-};
+/// What the springs are measured by.
+struct Material {
+  double noise = 0;   // of a reading, metres
+  double strain = 0;  // a border gives by this share of the distance that it bridges,
+  double bend = 0;    // or by this angle, where a reading is off by its noise
 
-/// An edge that crosses a border gives by `strain` of its length, or bends by `turn`, where a reading is off
-/// by its noise. The soft end stretches like fleece, the stiff end like leather.
-Stiffness stiffness_of(const ModelTables& model, double noise, double material) noexcept {
-  const double strain = 0.1 + 0.4 * material, turn = 0.1 + 0.4 * material;
-  const double give = strain * model.spacing / kUnitsPerMetre;
-  return {noise * noise / (give * give), noise * noise / (turn * turn)};
-}
+  [[nodiscard]] double stretch_stiffness(const PatchBorder& border) const noexcept {
+    const double give = strain * border.length;
+    return border.edges * noise * noise / (give * give);
+  }
+  [[nodiscard]] double bend_stiffness(const PatchBorder& border) const noexcept {
+    return border.edges * noise * noise / (bend * bend);
+  }
+};
 
 void find_homes(const PatchTables& patches, const PointState& points, PatchWarp& warp) noexcept {
   std::array<std::array<std::uint16_t, limits::kMaxRegions>, kMaxPatches> counts{};
@@ -49,6 +55,8 @@ void place(const ModelTables& model, const PatchTables& patches, PatchWarp& warp
                       static_cast<std::int32_t>(c.z())};
   }
 }
+
+using Chosen = std::array<bool, kMaxPatches>;  // patches
 
 struct Gates {
   std::int32_t inward = 0, outward = 0;  // 1/16 mm, at most 8191
@@ -83,14 +91,16 @@ void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoin
             moments);
 }
 
-/// The integer kernel: every point that faces the camera, beside the reading of its pixel, into the moments
-/// of its patch about the patch's centre. Formats are those of PlaneMoments.
-/// Overflow bounds: gates <= 8191, so that a difference squared stays below 2^26 and three below 2^28; arms
-/// are at most a model's extent, 2^16, times Q14 normals: below 2^31 for the difference of two.
-[[gnu::noinline]] void gather(const Look& look, const PointState& points, PatchWarp& warp) noexcept {
+/// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its
+/// pixel, into the moments of its patch about the patch's centre. Formats are those of PlaneMoments. Overflow
+/// bounds: gates <= 8191, so that a difference squared stays below 2^26 and three below 2^28; arms are at
+/// most a model's extent, 2^16, times Q14 normals: below 2^31 for the difference of two.
+[[gnu::noinline]] void gather(const Look& look, const PointState& points, const Chosen& chosen,
+                              PatchWarp& warp) noexcept {
   const ModelTables& model = look.model;
   for (std::size_t i = 0; i < model.size; ++i) {
     const std::size_t p = look.patches.patch_of[i];
+    if (!chosen[p]) continue;
     const FixedPose& pose = warp.fixed[p];
     const IntPoint n = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
     const IntPoint at = pose.point(model.x[i], model.y[i], model.z[i]);
@@ -110,18 +120,6 @@ void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoin
     const std::int32_t w = tukey_weight(residual, limit);
     if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
     add_row(at, n, residual, w, warp.centre[p], warp.moments[p]);
-  }
-}
-
-void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
-  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
-                   kResidual = 1 / 256000.0;
-  std::size_t k = 0;
-  for (std::size_t row = 0; row < 6; ++row) {
-    const double unit_row = row < 3 ? kArm : kNormal;
-    for (std::size_t column = row; column < 6; ++column)
-      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
-    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
   }
 }
 
@@ -147,7 +145,7 @@ void add_anchor(const PatchTables& patches, const RigidTransform& region, double
 /// Joints turn far where the rest of the surface barely bends: bending gives way.
 constexpr double kFreeTurn = 0.5;  // radians
 
-void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWarp& warp) noexcept {
+void add_borders(const PatchTables& patches, const Material& material, PatchWarp& warp) noexcept {
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
     const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
@@ -156,8 +154,8 @@ void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWa
     ElasticLink link;
     link.a = border.a;
     link.b = border.b;
-    link.stretch = stiffness.stretch * border.edges;
-    link.bend = stiffness.bend * border.edges * giving_way(turn.squaredNorm(), kFreeTurn);
+    link.stretch = material.stretch_stiffness(border);
+    link.bend = material.bend_stiffness(border) * giving_way(turn.squaredNorm(), kFreeTurn);
     if (warp.home[border.a] != warp.home[border.b]) {
       link.stretch *= kJointShare;
       link.bend *= kJointShare;
@@ -168,21 +166,49 @@ void add_borders(const PatchTables& patches, const Stiffness& stiffness, PatchWa
   }
 }
 
+void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
+  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
+                   kResidual = 1 / 256000.0;
+  std::size_t k = 0;
+  for (std::size_t row = 0; row < 6; ++row) {
+    const double unit_row = row < 3 ? kArm : kNormal;
+    for (std::size_t column = row; column < 6; ++column)
+      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
+    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
+  }
+}
+
+/// By how much the sum of squares falls when the patch follows its readings as far as a held one may.
+double gain_of(const PatchTables& patches, const PlaneMoments& moments, std::size_t p) noexcept {
+  Symmetric6 a;
+  Vector6 b = Vector6::Zero();
+  add_readings(moments, a, b);
+  const double hold = kHoldShare * patches.sizes[p];
+  a.add_shift_spring(hold);
+  a.add_turn_spring(hold * 0.5 * patches.radius * patches.radius);
+  Factor6 factor;
+  return factor.factorise(a) ? b.dot(factor.solve(b)) : 0;
+}
+
 /// How well readings fit a patch.
 struct Fit {
   double weight = 0;  // of readings
   double square = 0;  // mean residual squared, metres squared
+  double gain = 0;    // by how much the patch's own motion would lower the sum of squares
 };
 
-void measure(const Look& look, const PointState& points, PatchWarp& warp,
+void measure(const Look& look, const PointState& points, const Chosen& chosen, PatchWarp& warp,
              std::array<Fit, kMaxPatches>& fits) noexcept {
-  for (std::size_t p = 0; p < look.patches.count; ++p) warp.moments[p] = PlaneMoments();
+  for (std::size_t p = 0; p < look.patches.count; ++p)
+    if (chosen[p]) warp.moments[p] = PlaneMoments();
   place(look.model, look.patches, warp);
-  gather(look, points, warp);
+  gather(look, points, chosen, warp);
   for (std::size_t p = 0; p < look.patches.count; ++p) {
+    if (!chosen[p]) continue;
     const PlaneMoments& m = warp.moments[p];
     const auto weight = static_cast<double>(m.weight);
-    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0};
+    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0,
+               gain_of(look.patches, m, p)};
   }
 }
 
@@ -191,31 +217,95 @@ constexpr double kSmoothedNoise = 0.35;
 /// Mean squares of a dozen readings differ by half of themselves by chance.
 constexpr double kByChance = 1.4;
 
+/// Nearer than this share of that, a patch is where its region is.
+constexpr double kAtHome = 0.25;
+/// By chance, the six freedoms of a patch lower the sum of its squared residuals by six times σ² where edges,
+/// which are not smoothed, hold it; neighbouring readings share their noise, hence twice. What they lower by
+/// more pulls a patch away.
+constexpr double kByChanceFreely = 12;
+
 /// Patches that the readings put as well where their region is go back there: what slid along the surface
 /// unnoticed does not add up over the frames. Not so beside a patch that must be elsewhere: what moves takes
-/// its neighbours along, whose readings may not show it.
-void return_home(const Look& look, const RegionSet& regions, const PointState& points, double noise,
-                 PatchWarp& warp) noexcept {
+/// its neighbours along, whose readings may not show it. Notes what is seen of every patch; returns those
+/// that are off their region.
+Chosen return_home(const Look& look, const RegionSet& regions, const PointState& points, double noise,
+                   PatchWarp& warp) noexcept {
+  const double smoothed = kSmoothedNoise * noise, near = kAtHome * smoothed;
+  const std::size_t count = look.patches.count;
   std::array<Fit, kMaxPatches> here, home;
-  measure(look, points, warp, here);
+  Chosen all, astray{};
+  all.fill(true);
+  measure(look, points, all, warp, here);
+  home = here;
   const std::array<RigidTransform, kMaxPatches> own = warp.pose;
-  std::array<bool, kMaxPatches> fits{};
-  for (std::size_t p = 0; p < look.patches.count; ++p)
-    warp.pose[p] = regions[static_cast<std::size_t>(warp.home[p])].pose;
-  measure(look, points, warp, home);
-  for (std::size_t p = 0; p < look.patches.count; ++p) {
-    const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
-    const bool as_near = home[p].square <= std::max(kByChance * here[p].square,
-                                                    kSmoothedNoise * kSmoothedNoise * noise * noise);
-    fits[p] = as_many && as_near;
+  for (std::size_t p = 0; p < count; ++p) {
+    const RigidTransform& region = regions[static_cast<std::size_t>(warp.home[p])].pose;
+    astray[p] = patch_deviation(look.patches, warp, p, region) > near * near;
+    warp.pose[p] = region;
   }
-  for (std::size_t p = 0; p < look.patches.count; ++p) {
+  measure(look, points, astray, warp, home);
+  std::array<bool, kMaxPatches> fits{};
+  for (std::size_t p = 0; p < count; ++p) {
+    const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
+    const bool as_near = home[p].square <= std::max(kByChance * here[p].square, smoothed * smoothed);
+    fits[p] = as_many && as_near;
+    warp.seen[p] = here[p].weight;
+  }
+  for (std::size_t p = 0; p < count; ++p) {
     warp.held[p] = fits[p];
-    for (std::size_t q = 0; q < look.patches.count && warp.held[p]; ++q)
+    for (std::size_t q = 0; q < count && warp.held[p]; ++q)
       if (look.patches.neighbours[p].has(q) && warp.home[q] == warp.home[p] && here[q].weight > 0)
         warp.held[p] = fits[q];
     if (!warp.held[p]) warp.pose[p] = own[p];
+    const Fit& now = warp.held[p] ? home[p] : here[p];
+    astray[p] = (astray[p] && !warp.held[p]) || now.gain > kByChanceFreely * noise * noise;
   }
+  return astray;
+}
+
+/// Springs carry what moves no farther than this many patches into what stands where its region is: at each
+/// the anchors take the larger part.
+constexpr int kReachOfSprings = 3;
+
+/// The patches that may move off their regions: those that are off them, and what their springs reach.
+Chosen moving_patches(const PatchTables& patches, const Chosen& astray) noexcept {
+  Chosen moving = astray;
+  for (int ring = 0; ring < kReachOfSprings; ++ring) {
+    const Chosen inner = moving;
+    for (std::size_t k = 0; k < patches.border_count; ++k) {
+      const PatchBorder& border = patches.borders[k];
+      if (inner[border.a] || inner[border.b]) moving[border.a] = moving[border.b] = true;
+    }
+  }
+  return moving;
+}
+
+/// One balance of readings, anchors and springs. False when there is none.
+bool balance(const Look& look, const RegionSet& regions, const PointState& points, const Chosen& moving,
+             const Material& material, double limit, int iterations, PatchWarp& warp) noexcept {
+  const std::size_t count = look.patches.count;
+  for (std::size_t p = 0; p < count; ++p)
+    if (moving[p]) warp.moments[p] = PlaneMoments();
+  place(look.model, look.patches, warp);
+  gather(look, points, moving, warp);
+  warp.system.clear(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    if (!moving[p]) {
+      warp.system.hold(p);
+      continue;
+    }
+    add_readings(warp.moments[p], warp.system.own(p), warp.system.force(p));
+    warp.seen[p] = static_cast<double>(warp.moments[p].weight) / 256;
+    add_anchor(look.patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
+  }
+  add_borders(look.patches, material, warp);
+  if (!warp.system.solve(iterations)) return false;
+  for (std::size_t p = 0; p < count; ++p) {
+    const Vector6& x = warp.system.motion(p);
+    if (!moving[p] || !(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
+    warp.pose[p] = motion_about(x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
+  }
+  return true;
 }
 
 }  // namespace
@@ -233,34 +323,24 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   }
   const std::int32_t z = depth_of(regions[0].pose, model.centre);
   const double noise = surface.sigma(z) / kUnitsPerMetre, limit = tolerance.deformed(z) / kUnitsPerMetre;
-  const Stiffness stiffness = stiffness_of(model, noise, settings.material);
+  const Material material{noise, strain_limit(settings.material), bend_limit(settings.material)};
   Look look{model, patches, surface, projector, {}, 1};
   Gates& gates = look.gates;
   gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
-  return_home(look, regions, points, noise, warp);
+  const std::array<RigidTransform, kMaxPatches> before = warp.pose;
+  const Chosen moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
   for (int round = 0; round < settings.rounds; ++round) {
-    for (std::size_t p = 0; p < patches.count; ++p) warp.moments[p] = PlaneMoments();
-    place(model, patches, warp);
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
-    gather(look, points, warp);
-    warp.system.clear(patches.count);
-    for (std::size_t p = 0; p < patches.count; ++p) {
-      add_readings(warp.moments[p], warp.system.own(p), warp.system.force(p));
-      warp.seen[p] = static_cast<double>(warp.moments[p].weight) / 256;
-      add_anchor(patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
-    }
-    add_borders(patches, stiffness, warp);
-    if (!warp.system.solve(settings.iterations)) break;
-    for (std::size_t p = 0; p < patches.count; ++p) {
-      const Vector6& x = warp.system.motion(p);
-      if (!(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
-      warp.pose[p] = motion_about(x, warp.pose[p] * patches.centres[p]) * warp.pose[p];
-    }
+    if (!balance(look, regions, points, moving, material, limit, settings.iterations, warp)) break;
     // the nearer the patches are, the less a reading far off has to do with them
     gates.inward = std::max(gates.inward * 3 / 4, 2 * tolerance.deformed(z));
     gates.outward = std::max(gates.outward * 3 / 4, 2 * tolerance.deformed(z));
   }
+  for (std::size_t p = 0; p < patches.count; ++p)
+    if (moving[p])
+      warp.pose[p] =
+          steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius, kNoiseOfPose * noise);
   place(model, patches, warp);
 }
 

@@ -64,6 +64,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
   widest_ = 0.12 * model.radius();
   fine_ = 0.03 * model.radius();
   finalists_.start(model.centre(), model.radius());
+  searches_ = 0;
   state_ = DetectState::idle;
 }
 
@@ -78,6 +79,7 @@ void FrameDetector::begin(const Surface& surface) noexcept {
   keypoints_used_ = 0;
   best_ = Detection();
   state_ = DetectState::working;
+  ++searches_;
 }
 
 void FrameDetector::begin(const Surface& surface, const RigidTransform& pose, double radius) noexcept {
@@ -152,15 +154,16 @@ std::int64_t FrameDetector::slice_sample() noexcept {
     return 1;
   }
   // Keypoints: every point, in an order of which each prefix is spread over the picture: steps of the golden
-  // ratio.
+  // ratio. Each search begins beside the last one: where one has missed, the next has other keypoints.
   order_count_ = point_count_;
   order_next_ = 0;
   const SpreadOrder order(point_count_);
+  const std::size_t first = searches_ % point_count_;
   // With a hint, those near it come first.
   const Vector3 centre = hint_ * model_.centre();
   std::size_t placed = 0;
   for (int near = hinted_ ? 1 : 0; near >= 0; --near)
-    for (std::size_t k = 0, at = 0; k < point_count_; ++k, at = order.next(at)) {
+    for (std::size_t k = 0, at = first; k < point_count_; ++k, at = order.next(at)) {
       if (hinted_) {
         const Vector3 apart = to_vector(points_[at]) - centre;
         if ((apart.dot(apart) <= hint_radius_ * hint_radius_) != (near == 1)) continue;

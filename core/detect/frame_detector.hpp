@@ -94,6 +94,7 @@ class FrameDetector {
   [[nodiscard]] bool supported(const RigidTransform& pose) const noexcept;
 
   DetectSettings settings_;
+  std::size_t searches_ = 0;  // begun so far
   ModelView model_;
   double leaf_ = 0;                            // spacing of the scene points, metres
   double coarse_ = 0, fine_ = 0, widest_ = 0;  // tolerances, metres

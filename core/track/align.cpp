@@ -73,10 +73,25 @@ Vector6 difference(const RigidTransform& target, const RigidTransform& pose, con
   return x;
 }
 
+/// A spring of `noise` squared over the joint's give squared.
+void add_joint(const Joint& joint, const RigidTransform& pose, const Vector3& centre, double noise,
+               Matrix6& a, Vector6& b) noexcept {
+  const Vector3 at = pose * joint.place, arm = at - centre, gap = joint.target - at;
+  const double k = noise / (joint.give * joint.give);
+  Symmetric6 spring;
+  spring.add_point_spring(k, arm);
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t column = 0; column < 6; ++column)
+      a(static_cast<int>(row), static_cast<int>(column)) +=
+          spring.a[row >= column ? Symmetric6::index(row, column) : Symmetric6::index(column, row)];
+  b.head<3>() += k * arm.cross(gap);
+  b.tail<3>() += k * gap;
+}
+
 }  // namespace
 
-void align(const Surface& surface, const AlignSettings& settings, const PointState& points,
-           RegionSet& regions) noexcept {
+void align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
+           const PointState& points, RegionSet& regions) noexcept {
   const auto all = points.correspondences.first(points.correspondence_count);
   std::array<Spread, limits::kMaxRegions> spreads{};
   for (const Correspondence& c : all) spreads[static_cast<std::size_t>(c.region)].add(c);
@@ -116,6 +131,7 @@ void align(const Surface& surface, const AlignSettings& settings, const PointSta
       a(i, i) += information;
       b[i] += information * back[i];
     }
+    if (joints[k].tied) add_joint(joints[k], region.pose, centre_metres, spread_metres * spread_metres, a, b);
     const Vector6 x = a.ldlt().solve(b);
     if (!(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
     region.pose = motion_about(x, centre_metres) * region.pose;

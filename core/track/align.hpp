@@ -3,7 +3,7 @@
 
 #include "core/camera/sensor.hpp"
 #include "core/fixed/moments.hpp"
-#include "core/track/track_state.hpp"
+#include "core/track/joints.hpp"
 
 namespace pliant {
 
@@ -16,9 +16,10 @@ struct AlignSettings {
 
 /// One Gauss–Newton step for every region with correspondences: Tukey weights at a scale from the median
 /// residual (never below the sensor's noise), the prediction as a prior that decides where the surface does
-/// not. Updates pose, scale and rms. Regions with too few correspondences keep their prediction.
-void align(const Surface& surface, const AlignSettings& settings, const PointState& points,
-           RegionSet& regions) noexcept;
+/// not, joints that hold what slides along itself. Updates pose, scale and rms. Regions with too few
+/// correspondences keep their prediction.
+void align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
+           const PointState& points, RegionSet& regions) noexcept;
 
 /// Fewest correspondences that move a region.
 inline constexpr std::uint32_t kFewestCorrespondences = 24;

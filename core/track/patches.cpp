@@ -123,6 +123,8 @@ void PatchTables::start(const ModelTables& model, std::span<std::uint16_t> queue
     square += (rest(model, i) - centres[patch_of[i]]).squaredNorm();
   radius = std::sqrt(2 * square / static_cast<double>(model.size));  // of the disc of that spread
   find_borders(model, *this);
+  for (std::size_t k = 0; k < border_count; ++k)
+    borders[k].length = (centres[borders[k].a] - centres[borders[k].b]).norm();
   for (std::size_t i = 0; i < model.size; ++i) blend[i] = blend_of(model, *this, i);
 }
 

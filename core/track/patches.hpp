@@ -30,6 +30,7 @@ struct PatchBorder {
   std::uint8_t a = 0, b = 0;
   std::uint32_t edges = 0;           ///< of the surface graph that cross it
   Vector3 centre = Vector3::Zero();  ///< model frame, metres
+  double length = 0;                 ///< from one patch's centre to the other's, metres
 };
 
 /// The patches that a point moves with when the surface bends.

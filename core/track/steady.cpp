@@ -2,23 +2,29 @@
 
 namespace pliant {
 
+RigidTransform steadied(const RigidTransform& before, const RigidTransform& after, const Vector3& centre,
+                        double half_radius, double noise) noexcept {
+  const Vector3 at = before * centre;
+  const RigidTransform step = after * before.inverse();
+  const Vector3 turn = small_vector_from_rotation(step.rotation);
+  const Vector3 shift = step * at - at;
+  const double squared = shift.squaredNorm() + turn.squaredNorm() * half_radius * half_radius;
+  const double share = squared > 0 ? squared / (squared + noise * noise) : 0;
+  RigidTransform part;
+  part.rotation = rotation_from_small_vector(share * turn);
+  part.translation = at + share * shift - part.rotation * at;
+  RigidTransform out = part * before;
+  out.rotation = orthonormalised(out.rotation);
+  return out;
+}
+
 void hold_steady(const ModelTables& model, const Surface& surface, RegionSet& regions) noexcept {
   const double half_radius = 0.5 * model.model->radius();
   for (TrackedRegion& region : regions) {
     if (!region.alive) continue;
-    const Vector3 before = region.last_pose * model.centre;
-    const RigidTransform step = region.pose * region.last_pose.inverse();
-    const Vector3 turn = small_vector_from_rotation(step.rotation);
-    const Vector3 shift = step * before - before;
-    const double squared = shift.squaredNorm() + turn.squaredNorm() * half_radius * half_radius;
-    const double noise =
-        0.5 * surface.sigma(static_cast<std::int32_t>(before.z() * kUnitsPerMetre)) / kUnitsPerMetre;
-    const double share = squared / (squared + noise * noise);
-    RigidTransform part;
-    part.rotation = rotation_from_small_vector(share * turn);
-    part.translation = before + share * shift - part.rotation * before;
-    region.pose = part * region.last_pose;
-    region.pose.rotation = orthonormalised(region.pose.rotation);
+    const double depth = (region.last_pose * model.centre).z() * kUnitsPerMetre;
+    const double noise = kNoiseOfPose * surface.sigma(static_cast<std::int32_t>(depth)) / kUnitsPerMetre;
+    region.pose = steadied(region.last_pose, region.pose, model.centre, half_radius, noise);
   }
 }
 

@@ -72,6 +72,7 @@ inline constexpr std::uint64_t kRegionFingerprint = FingerprintBuilder()
                                                         .field("float", "confidence")
                                                         .field("double", "trans", {{"3"}})
                                                         .field("double", "quat", {{"4"}})
+                                                        .field("float", "joint", {{"3"}})
                                                         .value();
 
 inline constexpr std::uint64_t kRegionsFingerprint =
@@ -103,6 +104,7 @@ inline constexpr std::uint64_t kDeformedFingerprint =
         .field("int16_t", "index", {{"num_points", true}})
         .field("float", "position", {{"num_points", true}, {"3"}})
         .field("float", "displacement", {{"num_points", true}, {"3"}})
+        .field("float", "strain", {{"num_points", true}})
         .value();
 
 inline constexpr std::uint64_t kStatusFingerprint =
@@ -116,6 +118,7 @@ inline constexpr std::uint64_t kStatusFingerprint =
         .field("int8_t", "device")
         .field("int8_t", "stream_fault")
         .field("float", "rate")
+        .field("float", "strain_energy")
         .field("int32_t", "latency_median")
         .field("int32_t", "latency_p99")
         .field("int32_t", "latency_max")

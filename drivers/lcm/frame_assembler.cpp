@@ -41,6 +41,7 @@ void FrameAssembler::begin(std::int64_t utime, std::int64_t frame, std::int64_t 
   frame_.deformed.clear();
   frame_.position.clear();
   frame_.displacement.clear();
+  frame_.strain.clear();
   regions_seen_.clear();
   deformed_seen_.clear();
 }
@@ -70,6 +71,7 @@ bool FrameAssembler::take(const DeformedMessage& message) {
   frame_.position.insert(frame_.position.end(), message.position.begin(), message.position.end());
   frame_.displacement.insert(frame_.displacement.end(), message.displacement.begin(),
                              message.displacement.end());
+  frame_.strain.insert(frame_.strain.end(), message.strain.begin(), message.strain.end());
   told_ = whole();
   return told_;
 }

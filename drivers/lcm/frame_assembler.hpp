@@ -19,6 +19,7 @@ struct ReceivedFrame {
   std::vector<std::int16_t> deformed;  ///< model points, ascending
   std::vector<Point3f> position;       ///< of those, camera frame, metres
   std::vector<Point3f> displacement;   ///< of those, metres
+  std::vector<float> strain;           ///< of those, as a share of the length
 };
 
 class FrameAssembler {

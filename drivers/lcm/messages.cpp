@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-constexpr std::size_t kRegionBytes = 70;
+constexpr std::size_t kRegionBytes = 82;
 constexpr std::int16_t kMaxParts = 1024;
 
 bool starts_with(wire::Reader& in, std::uint64_t fingerprint) {
@@ -41,6 +41,28 @@ bool read_points(wire::Reader& in, std::size_t count, std::vector<Point3f>& poin
     point = {xyz[0], xyz[1], xyz[2]};
   }
   return finite;
+}
+
+/// Three numbers, or three that are none.
+bool read_joint(wire::Reader& in, std::optional<Point3f>& joint) {
+  std::array<float, 3> xyz{};
+  joint.reset();
+  if (read_finite(in, xyz)) {
+    joint = Point3f{xyz[0], xyz[1], xyz[2]};
+    return true;
+  }
+  return std::all_of(xyz.begin(), xyz.end(), [](float value) { return std::isnan(value); });
+}
+
+/// Finite and no less than 0.
+bool is_measure(float value) {
+  return value >= 0 && std::isfinite(value);
+}
+
+bool read_measures(wire::Reader& in, std::size_t count, std::vector<float>& measures) {
+  measures.resize(count);
+  for (float& value : measures) value = in.get<float>();
+  return std::all_of(measures.begin(), measures.end(), is_measure);
 }
 
 bool read_state(wire::Reader& in, TrackState& state) {
@@ -96,9 +118,9 @@ bool decode(std::span<const std::uint8_t> body, RegionsMessage& message) {
     region.points = in.get<std::int32_t>();
     region.rms = in.get<float>();
     region.confidence = in.get<float>();
-    if (region.id < 0 || region.parent < -1 || region.points < 0 || !std::isfinite(region.rms) ||
-        region.rms < 0 || !in_unit_range(region.confidence) ||
-        !read_transform(in, region.trans, region.quat)) {
+    if (region.id < 0 || region.parent < -1 || region.points < 0 || !is_measure(region.rms) ||
+        !in_unit_range(region.confidence) || !read_transform(in, region.trans, region.quat) ||
+        !read_joint(in, region.joint)) {
       return false;
     }
   }
@@ -125,7 +147,7 @@ bool decode(std::span<const std::uint8_t> body, DeformedMessage& message) {
   message.model_id = in.get<std::int64_t>();
   if (!read_parts(in, message.part, message.parts)) return false;
   message.num_deformed = in.get<std::int32_t>();
-  constexpr std::size_t kPointBytes = sizeof(std::int16_t) + 2 * sizeof(Point3f);
+  constexpr std::size_t kPointBytes = sizeof(std::int16_t) + 2 * sizeof(Point3f) + sizeof(float);
   const std::size_t count = in.get_count(kPointBytes, limits::kMaxModelPoints);
   if (!in.ok() || message.num_deformed < static_cast<std::int32_t>(count) ||
       message.num_deformed > static_cast<std::int32_t>(limits::kMaxModelPoints)) {
@@ -139,7 +161,7 @@ bool decode(std::span<const std::uint8_t> body, DeformedMessage& message) {
     previous = index;
   }
   return read_points(in, count, message.position) && read_points(in, count, message.displacement) &&
-         whole(in);
+         read_measures(in, count, message.strain) && whole(in);
 }
 
 bool decode(std::span<const std::uint8_t> body, StatusMessage& message) {
@@ -158,7 +180,8 @@ bool decode(std::span<const std::uint8_t> body, StatusMessage& message) {
   if (fault < 0 || fault >= kStreamFaults) return false;
   message.stream_fault = static_cast<StreamFault>(fault);
   message.rate = in.get<float>();
-  if (!std::isfinite(message.rate) || message.rate < 0) return false;
+  message.strain_energy = in.get<float>();
+  if (!is_measure(message.rate) || !is_measure(message.strain_energy)) return false;
   message.latency_median = in.get<std::int32_t>();
   message.latency_p99 = in.get<std::int32_t>();
   message.latency_max = in.get<std::int32_t>();

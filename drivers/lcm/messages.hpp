@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,8 @@ struct RegionMessage {
   float rms = 0, confidence = 0;
   std::array<double, 3> trans{};
   std::array<double, 4> quat{1, 0, 0, 0};  ///< w, x, y, z
+  /// Camera frame, metres; empty for the base and where the region does not touch its parent.
+  std::optional<Point3f> joint;
 };
 
 struct RegionsMessage {
@@ -58,6 +61,7 @@ struct DeformedMessage {
   std::int32_t num_deformed = 0;
   std::vector<std::int16_t> index;
   std::vector<Point3f> position, displacement;
+  std::vector<float> strain;  ///< shares, no less than 0
 };
 
 struct StageMessage {
@@ -72,7 +76,7 @@ struct StatusMessage {
   TrackState state = TrackState::searching;
   DeviceState device = DeviceState::absent;
   StreamFault stream_fault = StreamFault::none;
-  float rate = 0;
+  float rate = 0, strain_energy = 0;
   std::int32_t latency_median = 0, latency_p99 = 0, latency_max = 0;
   std::vector<StageMessage> stages;
   std::int64_t tracked = 0, searching = 0, lost = 0, dropped = 0, bad_frames = 0, deadline_misses = 0;
@@ -102,7 +106,8 @@ struct ModelMessage {
 
 /// Decode a message body of any origin. False, and `message` of no use, where the body is not a whole, sound
 /// message of its type: wrong fingerprint, cut short, bytes left over, counts or indices out of range,
-/// numbers that are not finite, quaternions that are not unit. Storage in `message` is reused.
+/// numbers that are not finite (but for a joint that is none), quaternions that are not unit. Storage in
+/// `message` is reused.
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, PoseMessage& message);
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, RegionsMessage& message);
 [[nodiscard]] bool decode(std::span<const std::uint8_t> body, DeformedMessage& message);

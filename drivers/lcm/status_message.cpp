@@ -20,6 +20,7 @@ std::span<const std::uint8_t> encode_status(const StatusContent& content,
   out.put<std::int8_t>(static_cast<std::int8_t>(content.device));
   out.put<std::int8_t>(static_cast<std::int8_t>(content.stream_fault));
   out.put<float>(content.rate);
+  out.put<float>(content.strain_energy);
   out.put<std::int32_t>(content.latency_median_us);
   out.put<std::int32_t>(content.latency_p99_us);
   out.put<std::int32_t>(content.latency_max_us);

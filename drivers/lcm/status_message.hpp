@@ -30,7 +30,8 @@ struct StatusContent {
   TrackState state = TrackState::searching;
   DeviceState device = DeviceState::absent;
   StreamFault stream_fault = StreamFault::none;
-  float rate = 0;  ///< frames a second
+  float rate = 0;           ///< frames a second
+  float strain_energy = 0;  ///< of the latest tracked frame; 0 unless tracking
   std::int32_t latency_median_us = 0, latency_p99_us = 0, latency_max_us = 0;
   std::span<const StageTimes> stages;  ///< up to kMaxStatusStages, the last one "total"
   std::int64_t tracked = 0, searching = 0, lost = 0, dropped = 0, bad_frames = 0, deadline_misses = 0;

@@ -89,6 +89,7 @@ void TrackMessages::add_regions(const TrackResult& result, float trust) noexcept
       out.put<float>(region.rms);
       out.put<float>(trust * region.confidence);
       put_transform(out, region.pose);
+      put_point(out, region.joint);
     }
     out.put<std::int32_t>(static_cast<std::int32_t>(rest_.size()));
     out.put<std::int32_t>(static_cast<std::int32_t>(first));
@@ -99,7 +100,8 @@ void TrackMessages::add_regions(const TrackResult& result, float trust) noexcept
 }
 
 void TrackMessages::add_deformed(const TrackResult& result) noexcept {
-  const std::size_t points = std::min({result.labels.size(), result.positions.size(), rest_.size()});
+  const std::size_t points =
+      std::min({result.labels.size(), result.positions.size(), result.strains.size(), rest_.size()});
   std::size_t deformed = 0;
   for (std::size_t i = 0; i < points; ++i) {
     if (result.labels[i] != kDeformed) continue;
@@ -126,6 +128,7 @@ void TrackMessages::add_deformed(const TrackResult& result) noexcept {
     for (std::size_t k = first; k < end; ++k) out.put<std::int16_t>(static_cast<std::int16_t>(deformed_[k]));
     for (std::size_t k = first; k < end; ++k) put_point(out, result.positions[deformed_[k]]);
     for (std::size_t k = first; k < end; ++k) put_point(out, displacements_[k]);
+    for (std::size_t k = first; k < end; ++k) out.put<float>(result.strains[deformed_[k]]);
     add_body(MessageKind::deformed, out.size());
   }
 }

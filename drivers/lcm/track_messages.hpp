@@ -27,7 +27,7 @@ class TrackMessages {
   /// Labels and deformed points of one message; more make further parts. Either way a body stays below
   /// kMaxMessageBytes.
   static constexpr std::size_t kLabelsPerPart = 15000;
-  static constexpr std::size_t kDeformedPerPart = 600;
+  static constexpr std::size_t kDeformedPerPart = 530;
 
   /// `rest`: the model's points in the model frame, metres, up to limits::kMaxModelPoints (further ones are
   /// left out); must outlive this. `model_id`: ModelHeader::checksum.
@@ -50,10 +50,10 @@ class TrackMessages {
  private:
   // Sizes on the wire: the fingerprint and the fields of types/*.lcm.
   static constexpr std::size_t kPoseBytes = 72;
-  static constexpr std::size_t kRegionBytes = 70;
+  static constexpr std::size_t kRegionBytes = 82;
   static constexpr std::size_t kRegionsHeaderBytes = 57 + limits::kMaxRegions * kRegionBytes;
   static constexpr std::size_t kDeformedHeaderBytes = 44;
-  static constexpr std::size_t kDeformedPointBytes = 26;
+  static constexpr std::size_t kDeformedPointBytes = 30;
   static_assert(kRegionsHeaderBytes + kLabelsPerPart <= kMaxMessageBytes);
   static_assert(kDeformedHeaderBytes + kDeformedPerPart * kDeformedPointBytes <= kMaxMessageBytes);
   static_assert(limits::kMaxModelPoints <= 32768, "indices are int16");

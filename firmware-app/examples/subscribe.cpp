@@ -1,5 +1,7 @@
 // Prints what a tracker publishes: subscribe [URL] [PREFIX]. It uses LCM's own C++ interface and the classes
 // that lcm-gen makes of drivers/lcm/types, as any program outside this repository would.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
@@ -24,17 +26,28 @@ class Printer {
                                                                 : "searching";
     std::printf("regions   frame %lld %s\n", static_cast<long long>(m->frame), state);
     for (const pliant::region_t& region : m->regions) {
-      std::printf("            region %d: %d points, rms %.2f mm\n", int{region.id}, region.points,
+      std::printf("            region %d: %d points, rms %.2f mm", int{region.id}, region.points,
                   1000.0 * static_cast<double>(region.rms));
+      // Not a number for the base and where a region does not touch its parent.
+      if (!std::isnan(region.joint[0])) {
+        std::printf(", at %+.3f %+.3f %+.3f m", static_cast<double>(region.joint[0]),
+                    static_cast<double>(region.joint[1]), static_cast<double>(region.joint[2]));
+      }
+      std::printf("\n");
     }
   }
   void deformed(const lcm::ReceiveBuffer*, const std::string&, const pliant::deformed_t* m) {
-    std::printf("deformed  %d of %d points\n", m->num_points, m->num_deformed);
+    const float most = m->strain.empty() ? 0 : *std::max_element(m->strain.begin(), m->strain.end());
+    std::printf("deformed  %d of %d points, strained up to %.1f %%\n", m->num_points, m->num_deformed,
+                100 * static_cast<double>(most));
   }
   void status(const lcm::ReceiveBuffer*, const std::string&, const pliant::status_t* m) {
-    std::printf("status    %.1f frames/s, latency %.1f ms, %lld tracked, %lld lost, %lld dropped %s\n",
-                static_cast<double>(m->rate), m->latency_median / 1000.0, static_cast<long long>(m->tracked),
-                static_cast<long long>(m->lost), static_cast<long long>(m->dropped), m->last_error.c_str());
+    std::printf(
+        "status    %.1f frames/s, latency %.1f ms, %lld tracked, %lld lost, %lld dropped, "
+        "strain energy %.3f %s\n",
+        static_cast<double>(m->rate), m->latency_median / 1000.0, static_cast<long long>(m->tracked),
+        static_cast<long long>(m->lost), static_cast<long long>(m->dropped),
+        static_cast<double>(m->strain_energy), m->last_error.c_str());
   }
 };
 

@@ -2,9 +2,15 @@
 """Prints what a tracker publishes: python3 subscribe.py [--url URL] [--prefix PLIANT] [--types FOLDER] [--log FILE]"""
 
 import argparse
+import math
 import pathlib
 
 import lcm_python
+
+
+def hangs_at(joint):
+    """Empty for the base and where a region does not touch its parent: the joint is not a number there."""
+    return "" if any(map(math.isnan, joint)) else " at " + " ".join(f"{value:+.3f}" for value in joint)
 
 
 def describe(kind, message):
@@ -14,7 +20,7 @@ def describe(kind, message):
             f"{q:+.4f}" for q in message.quat)
     if kind == "REGIONS":
         state = {message.SEARCHING: "searching", message.TRACKING: "tracking", message.LOST: "lost"}[message.state]
-        parts = ", ".join(f"{region.id}: {region.points} points, rms {1000 * region.rms:.2f} mm"
+        parts = ", ".join(f"{region.id}: {region.points} points, rms {1000 * region.rms:.2f} mm{hangs_at(region.joint)}"
                           for region in message.regions)
         deformed = sum(label == message.DEFORMED for label in message.labels)
         hidden = sum(label == message.NOT_OBSERVED for label in message.labels)
@@ -22,10 +28,13 @@ def describe(kind, message):
     if kind == "DEFORMED":
         lengths = [(dx * dx + dy * dy + dz * dz) ** 0.5 for dx, dy, dz in message.displacement]
         most = 1000 * max(lengths, default=0)
-        return f"deformed  {message.num_points} of {message.num_deformed} points, moved up to {most:.1f} mm"
+        strain = 100 * max(message.strain, default=0)
+        return (f"deformed  {message.num_points} of {message.num_deformed} points, moved up to {most:.1f} mm, "
+                f"strained up to {strain:.1f} %")
     if kind == "STATUS":
         return (f"status    {message.rate:.1f} frames/s, latency {message.latency_median / 1000:.1f} ms, "
-                f"{message.tracked} tracked, {message.lost} lost, {message.dropped} dropped {message.last_error}")
+                f"{message.tracked} tracked, {message.lost} lost, {message.dropped} dropped, "
+                f"strain energy {message.strain_energy:.3f} {message.last_error}")
     return f"{kind.lower()}"
 
 

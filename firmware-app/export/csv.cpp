@@ -62,6 +62,12 @@ std::string transform(const std::array<double, 3>& t, const std::array<double, 4
                      q[3]);
 }
 
+/// Empty where a region does not touch its parent.
+std::string joint_of(const RegionMessage& region) {
+  if (!region.joint) return ",,";
+  return fmt::format("{:.7g},{:.7g},{:.7g}", region.joint->x, region.joint->y, region.joint->z);
+}
+
 class CsvExporter final : public LogExporter {
  public:
   explicit CsvExporter(std::string folder) : folder_(std::move(folder)) {}
@@ -75,14 +81,16 @@ class CsvExporter final : public LogExporter {
       return opened;
     if (Outcome opened = regions_.open(path("regions.csv"),
                                        "utime,frame,region,parent,points,rms_m,confidence,"
-                                       "tx,ty,tz,qw,qx,qy,qz");
+                                       "tx,ty,tz,qw,qx,qy,qz,joint_x,joint_y,joint_z");
         !opened)
       return opened;
-    if (Outcome opened = deformed_.open(path("deformed.csv"), "utime,frame,point,x,y,z,dx,dy,dz"); !opened)
+    if (Outcome opened = deformed_.open(path("deformed.csv"), "utime,frame,point,x,y,z,dx,dy,dz,strain");
+        !opened)
       return opened;
     if (Outcome opened = status_.open(
             path("status.csv"),
-            "utime,version,source,frame,state,device,rate_hz,latency_median_us,latency_p99_us,latency_max_us,"
+            "utime,version,source,frame,state,device,rate_hz,strain_energy,latency_median_us,latency_p99_us,"
+            "latency_max_us,"
             "tracked,searching,lost,dropped,bad_frames,deadline_misses,unsent,send_failures,workspace_bytes,"
             "rss_bytes,heap_calls,page_faults,last_error");
         !opened)
@@ -101,24 +109,25 @@ class CsvExporter final : public LogExporter {
         std::count(frame.labels.begin(), frame.labels.end(), kNotObserved), most,
         base ? transform(frame.regions.front().trans, frame.regions.front().quat) : std::string(",,,,,,")));
     for (const RegionMessage& r : frame.regions)
-      regions_.row(fmt::format("{},{},{},{},{},{:.6g},{:.6g},{}", frame.utime, frame.frame, r.id, r.parent,
-                               r.points, r.rms, r.confidence, transform(r.trans, r.quat)));
+      regions_.row(fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{}", frame.utime, frame.frame, r.id, r.parent,
+                               r.points, r.rms, r.confidence, transform(r.trans, r.quat), joint_of(r)));
     for (std::size_t i = 0; i < frame.deformed.size(); ++i) {
       const Point3f& p = frame.position[i];
       const Point3f& d = frame.displacement[i];
-      deformed_.row(fmt::format("{},{},{},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g}", frame.utime,
-                                frame.frame, frame.deformed[i], p.x, p.y, p.z, d.x, d.y, d.z));
+      deformed_.row(fmt::format("{},{},{},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.7g},{:.6g}", frame.utime,
+                                frame.frame, frame.deformed[i], p.x, p.y, p.z, d.x, d.y, d.z,
+                                frame.strain[i]));
     }
     return success();
   }
 
   Outcome status(std::int64_t /*received_us*/, const StatusMessage& s) override {
-    status_.row(fmt::format("{},{},{},{},{},{},{:.6g},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+    status_.row(fmt::format("{},{},{},{},{},{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
                             s.utime, quoted(s.version), quoted(s.source), s.frame, state_word(s.state),
-                            device_word(s.device), s.rate, s.latency_median, s.latency_p99, s.latency_max,
-                            s.tracked, s.searching, s.lost, s.dropped, s.bad_frames, s.deadline_misses,
-                            s.unsent, s.send_failures, s.workspace_bytes, s.rss_bytes, s.heap_calls,
-                            s.page_faults, quoted(s.last_error)));
+                            device_word(s.device), s.rate, s.strain_energy, s.latency_median, s.latency_p99,
+                            s.latency_max, s.tracked, s.searching, s.lost, s.dropped, s.bad_frames,
+                            s.deadline_misses, s.unsent, s.send_failures, s.workspace_bytes, s.rss_bytes,
+                            s.heap_calls, s.page_faults, quoted(s.last_error)));
     for (const StageMessage& stage : s.stages)
       stages_.row(
           fmt::format("{},{},{},{},{}", s.utime, quoted(stage.name), stage.median, stage.p99, stage.max));

@@ -8,6 +8,7 @@
 
 #include "drivers/geometry_files/region_colours.hpp"
 #include "firmware-app/export/exporters.hpp"
+#include "firmware-app/export/foxglove_schemas.hpp"
 #include "firmware-app/export/mcap_writer.hpp"
 #include "firmware-app/outputs/words.hpp"
 
@@ -33,32 +34,14 @@ std::string base64(std::string_view bytes) {
   return out;
 }
 
-Json object(std::initializer_list<std::pair<const char*, Json>> properties) {
-  Json all = Json::object();
-  for (const auto& [name, type] : properties) all[name] = type;
-  return {{"type", "object"}, {"properties", all}};
-}
-
-const Json kNumber = {{"type", "number"}};
-const Json kInteger = {{"type", "integer"}};
-const Json kText = {{"type", "string"}};
-const Json kBytes = {{"type", "string"}, {"contentEncoding", "base64"}};
-const Json kTime = object({{"sec", kInteger}, {"nsec", kInteger}});
-const Json kVector = object({{"x", kNumber}, {"y", kNumber}, {"z", kNumber}});
-const Json kQuaternion = object({{"x", kNumber}, {"y", kNumber}, {"z", kNumber}, {"w", kNumber}});
-
-Json array_of(const Json& items) {
-  return {{"type", "array"}, {"items", items}};
-}
-
-Json titled(const char* title, Json schema) {
-  schema["title"] = title;
-  return schema;
-}
-
 Json time_of(std::int64_t utime) {
   const std::int64_t seconds = utime >= 0 ? utime / 1'000'000 : -((999'999 - utime) / 1'000'000);
   return {{"sec", seconds}, {"nsec", (utime - seconds * 1'000'000) * 1000}};
+}
+
+Json joint_of(const RegionMessage& region) {
+  if (!region.joint) return nullptr;
+  return {{"x", region.joint->x}, {"y", region.joint->y}, {"z", region.joint->z}};
 }
 
 void put_float(std::string& out, float value) {
@@ -73,70 +56,12 @@ std::uint64_t nanoseconds(std::int64_t microseconds) {
 class FoxgloveExporter final : public LogExporter {
  public:
   FoxgloveExporter(McapWriter writer, std::string path) : writer_(std::move(writer)), path_(std::move(path)) {
-    const Json pose = object({{"position", kVector}, {"orientation", kQuaternion}});
-    transforms_ = channel("/tf", "foxglove.FrameTransform",
-                          object({{"timestamp", kTime},
-                                  {"parent_frame_id", kText},
-                                  {"child_frame_id", kText},
-                                  {"translation", kVector},
-                                  {"rotation", kQuaternion}}));
-    const Json field = object({{"name", kText}, {"offset", kInteger}, {"type", kInteger}});
-    points_ = channel("/pliant/points", "foxglove.PointCloud",
-                      object({{"timestamp", kTime},
-                              {"frame_id", kText},
-                              {"pose", pose},
-                              {"point_stride", kInteger},
-                              {"fields", array_of(field)},
-                              {"data", kBytes}}));
-    depth_ = channel("/pliant/depth", "foxglove.RawImage",
-                     object({{"timestamp", kTime},
-                             {"frame_id", kText},
-                             {"width", kInteger},
-                             {"height", kInteger},
-                             {"encoding", kText},
-                             {"step", kInteger},
-                             {"data", kBytes}}));
-    camera_ = channel("/pliant/camera", "foxglove.CameraCalibration",
-                      object({{"timestamp", kTime},
-                              {"frame_id", kText},
-                              {"width", kInteger},
-                              {"height", kInteger},
-                              {"distortion_model", kText},
-                              {"D", array_of(kNumber)},
-                              {"K", array_of(kNumber)},
-                              {"R", array_of(kNumber)},
-                              {"P", array_of(kNumber)}}));
-    const Json region = object({{"id", kInteger},
-                                {"parent", kInteger},
-                                {"points", kInteger},
-                                {"rms", kNumber},
-                                {"confidence", kNumber}});
-    frames_ = channel("/pliant/frame", "pliant.Frame",
-                      object({{"utime", kInteger},
-                              {"frame", kInteger},
-                              {"state", kText},
-                              {"confidence", kNumber},
-                              {"deformed", kInteger},
-                              {"not_observed", kInteger},
-                              {"regions", array_of(region)}}));
-    const Json stage =
-        object({{"name", kText}, {"median_us", kInteger}, {"p99_us", kInteger}, {"max_us", kInteger}});
-    status_ = channel("/pliant/status", "pliant.Status",
-                      object({{"utime", kInteger},
-                              {"state", kText},
-                              {"device", kText},
-                              {"rate", kNumber},
-                              {"latency_median_us", kInteger},
-                              {"latency_p99_us", kInteger},
-                              {"latency_max_us", kInteger},
-                              {"tracked", kInteger},
-                              {"searching", kInteger},
-                              {"lost", kInteger},
-                              {"dropped", kInteger},
-                              {"bad_frames", kInteger},
-                              {"rss_bytes", kInteger},
-                              {"last_error", kText},
-                              {"stages", array_of(stage)}}));
+    transforms_ = channel("/tf", "foxglove.FrameTransform");
+    points_ = channel("/pliant/points", "foxglove.PointCloud");
+    depth_ = channel("/pliant/depth", "foxglove.RawImage");
+    camera_ = channel("/pliant/camera", "foxglove.CameraCalibration");
+    frames_ = channel("/pliant/frame", "pliant.Frame");
+    status_ = channel("/pliant/status", "pliant.Status");
   }
 
   Outcome frame(std::int64_t received_us, const ReceivedFrame& frame, const ReceivedModel* model,
@@ -147,7 +72,8 @@ class FoxgloveExporter final : public LogExporter {
                          {"parent", r.parent},
                          {"points", r.points},
                          {"rms", r.rms},
-                         {"confidence", r.confidence}});
+                         {"confidence", r.confidence},
+                         {"joint", joint_of(r)}});
       const Json transform = {
           {"timestamp", time_of(frame.utime)},
           {"parent_frame_id", kCamera},
@@ -177,6 +103,7 @@ class FoxgloveExporter final : public LogExporter {
                 {"state", state_word(s.state)},
                 {"device", device_word(s.device)},
                 {"rate", s.rate},
+                {"strain_energy", s.strain_energy},
                 {"latency_median_us", s.latency_median},
                 {"latency_p99_us", s.latency_p99},
                 {"latency_max_us", s.latency_max},
@@ -228,9 +155,8 @@ class FoxgloveExporter final : public LogExporter {
   }
 
  private:
-  std::uint16_t channel(const char* topic, const char* name, Json schema) {
-    const std::string text = titled(name, std::move(schema)).dump();
-    return writer_.add_channel(topic, writer_.add_schema(name, "jsonschema", text), "json");
+  std::uint16_t channel(const char* topic, const char* name) {
+    return writer_.add_channel(topic, writer_.add_schema(name, "jsonschema", message_schema(name)), "json");
   }
 
   Outcome put(std::uint16_t channel, std::int64_t received_us, std::int64_t utime, const Json& message) {
@@ -243,8 +169,14 @@ class FoxgloveExporter final : public LogExporter {
   Outcome put_points(std::int64_t received_us, const ReceivedFrame& frame,
                      std::span<const Point3f> positions) {
     constexpr int kFloat32 = 7, kUint8 = 1, kInt8 = 2;
+    constexpr std::size_t kStride = 21;
     std::string bytes;
-    bytes.reserve(positions.size() * 17);
+    bytes.reserve(positions.size() * kStride);
+    std::vector<float> strains(positions.size());
+    for (std::size_t i = 0; i < frame.deformed.size(); ++i) {
+      const auto index = static_cast<std::size_t>(frame.deformed[i]);
+      if (index < strains.size()) strains[index] = frame.strain[i];
+    }
     for (std::size_t i = 0; i < positions.size(); ++i) {
       put_float(bytes, positions[i].x);
       put_float(bytes, positions[i].y);
@@ -255,6 +187,7 @@ class FoxgloveExporter final : public LogExporter {
       for (const int value : {int{colour.red}, int{colour.green}, int{colour.blue}, alpha,
                               int{static_cast<std::uint8_t>(frame.labels[i])}})
         bytes += static_cast<char>(value);
+      put_float(bytes, strains[i]);
     }
     const auto field = [](const char* name, int offset, int type) {
       return Json{{"name", name}, {"offset", offset}, {"type", type}};
@@ -265,11 +198,11 @@ class FoxgloveExporter final : public LogExporter {
                 {"pose",
                  {{"position", {{"x", 0}, {"y", 0}, {"z", 0}}},
                   {"orientation", {{"x", 0}, {"y", 0}, {"z", 0}, {"w", 1}}}}},
-                {"point_stride", 17},
+                {"point_stride", kStride},
                 {"fields",
                  {field("x", 0, kFloat32), field("y", 4, kFloat32), field("z", 8, kFloat32),
                   field("red", 12, kUint8), field("green", 13, kUint8), field("blue", 14, kUint8),
-                  field("alpha", 15, kUint8), field("region", 16, kInt8)}},
+                  field("alpha", 15, kUint8), field("region", 16, kInt8), field("strain", 17, kFloat32)}},
                 {"data", base64(bytes)}});
   }
 

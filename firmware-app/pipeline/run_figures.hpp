@@ -22,6 +22,7 @@ struct RunFigures {
   TrackState last_state = TrackState::searching;
   std::int64_t first_tracked = -1;  ///< number of the first tracked frame
   RigidTransform last_pose;         ///< of the base region in the latest tracked frame
+  float last_strain_energy = 0;     ///< of the latest tracked frame
   StageProfile profile;
   Histogram latency;   ///< capture to publish
   double seconds = 0;  ///< from the first frame's arrival to the last one's end

@@ -76,7 +76,10 @@ void TrackingLoop::take(const CapturedFrame& captured, RunFigures& figures) {
   last_frame_ = captured.frame.number;
   const bool state_changed = figures.frames() == 0 || result.state != figures.last_state;
   figures.last_state = result.state;
-  if (tracked) figures.last_pose = result.pose;
+  if (tracked) {
+    figures.last_pose = result.pose;
+    figures.last_strain_energy = result.strain_energy;
+  }
   if (tracked && figures.first_tracked < 0) figures.first_tracked = captured.frame.number;
   ++(tracked ? figures.tracked : result.state == TrackState::lost ? figures.lost : figures.searching);
 
@@ -160,6 +163,7 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   status.rate = seconds > 0
                     ? static_cast<float>(static_cast<double>(figures.frames() - frames_at_status_) / seconds)
                     : 0.0F;
+  if (status.state == TrackState::tracking) status.strain_energy = figures.last_strain_energy;
   status.latency_median_us = microseconds(latency[0]);
   status.latency_p99_us = microseconds(latency[1]);
   status.latency_max_us = microseconds(latency[2]);

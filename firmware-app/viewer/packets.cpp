@@ -48,6 +48,12 @@ Json colour(const RegionColour& c) {
   return {c.red, c.green, c.blue};
 }
 
+/// Null where a region hangs on nothing.
+Json joint_of(const RegionMessage& region) {
+  if (!region.joint) return nullptr;
+  return {region.joint->x, region.joint->y, region.joint->z};
+}
+
 std::int8_t eight_bits(float unit) {
   return static_cast<std::int8_t>(std::lround(std::clamp(unit, -1.0F, 1.0F) * 127.0F));
 }
@@ -74,6 +80,7 @@ Bytes status_packet(const StatusMessage& s) {
                                      {"state", state_word(s.state)},
                                      {"device", device_word(s.device)},
                                      {"rate", s.rate},
+                                     {"strain_energy", s.strain_energy},
                                      {"latency_median", s.latency_median},
                                      {"latency_p99", s.latency_p99},
                                      {"latency_max", s.latency_max},
@@ -131,7 +138,8 @@ Bytes frame_packet(const ReceivedFrame& frame) {
                        {"rms", r.rms},
                        {"confidence", r.confidence},
                        {"trans", r.trans},
-                       {"quat", r.quat}});
+                       {"quat", r.quat},
+                       {"joint", joint_of(r)}});
   std::vector<float> lengths, moved;
   for (std::size_t i = 0; i < frame.deformed.size(); ++i) {
     const Point3f& p = frame.position[i];

@@ -45,7 +45,7 @@ void align_base(benchmark::State& state) {
   settings.widest = 10 * kUnitsPerMillimetre;
   for (auto _ : state) {
     s.regions[0].pose = usual_pose();
-    align(s.surface, settings, s.points, s.regions);
+    align(s.surface, settings, {}, s.points, s.regions);
   }
   count_points(state);
 }

@@ -92,7 +92,7 @@ TEST_F(Align, LeavesARegionWithTooFewReadingsAlone) {
   settings.gate = 40 * kUnitsPerMillimetre;
   associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
   ASSERT_LT(scene().points.correspondence_count, kFewestCorrespondences);
-  align(scene().surface, {}, scene().points, scene().regions);
+  align(scene().surface, {}, {}, scene().points, scene().regions);
   EXPECT_EQ((scene().regions[0].pose.rotation - off.rotation).norm(), 0.0);
   EXPECT_EQ((scene().regions[0].pose.translation - off.translation).norm(), 0.0);
 }

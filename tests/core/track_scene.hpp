@@ -64,7 +64,7 @@ class TrackScene {
     associate(tables, surface, projector, regions, associate_settings, points);
     AlignSettings align_settings;
     align_settings.widest = widest;
-    align(surface, align_settings, points, regions);
+    align(surface, align_settings, {}, points, regions);
   }
   static WarpSettings warp_settings() {
     WarpSettings settings;

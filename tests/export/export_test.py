@@ -4,6 +4,7 @@ of the test's own. Arguments: the program, lcm-logger, lcm-logplayer, the exampl
 import base64
 import csv
 import json
+import math
 import os
 import pathlib
 import signal
@@ -130,7 +131,7 @@ class Export(unittest.TestCase):
 
     def test_tables_hold_what_the_messages_say(self):
         known = lcm_python.Types(types)
-        poses, regions, statuses, deformed = [], {}, 0, 0
+        poses, regions, statuses, deformed = [], {}, [], []
         for _, channel, data in lcm_python.read_log(self.folder / "run.log"):
             if not channel.startswith("PLIANT_"):
                 continue
@@ -140,21 +141,39 @@ class Export(unittest.TestCase):
             elif channel == "PLIANT_REGIONS":
                 regions[message.frame] = message
             elif channel == "PLIANT_STATUS":
-                statuses += 1
+                statuses.append(message)
             elif channel == "PLIANT_DEFORMED":
-                deformed += message.num_points
+                deformed += message.strain
         frames = table(self.folder / "first/csv/frames.csv")
         self.assertEqual(len(frames), len(regions))
-        self.assertEqual(len(table(self.folder / "first/csv/status.csv")), statuses)
-        self.assertEqual(len(table(self.folder / "first/csv/deformed.csv")), deformed)
-        self.assertEqual(len(table(self.folder / "first/csv/regions.csv")),
-                         sum(len(message.regions) for message in regions.values()))
+        energies = [float(row["strain_energy"]) for row in table(self.folder / "first/csv/status.csv")]
+        self.assertEqual(len(energies), len(statuses))
+        for energy, status in zip(energies, statuses):
+            self.assertAlmostEqual(energy, status.strain_energy, delta=1e-5 * status.strain_energy)
+        self.assertGreater(max(energies), 0, "the cushion is pressed")
+        strains = [float(row["strain"]) for row in table(self.folder / "first/csv/deformed.csv")]
+        self.assertEqual(len(strains), len(deformed))
+        for strain, told in zip(strains, deformed):
+            self.assertAlmostEqual(strain, told, delta=1e-5 * told)
+        self.assertGreater(max(strains), 0)
+        rows = table(self.folder / "first/csv/regions.csv")
+        all_regions = [region for message in regions.values() for region in message.regions]
+        self.assertEqual(len(rows), len(all_regions))
+        for row, region in zip(rows, all_regions):
+            for axis, told in zip("xyz", region.joint):
+                self.assert_same_or_none(row["joint_" + axis], told)
         tracked = [row for row in frames if row["tx"]]
         self.assertEqual(len(tracked), len(poses))
         for row, pose in zip(tracked, poses):
             self.assertEqual(int(row["utime"]), pose.utime)
             self.assertAlmostEqual(float(row["tz"]), pose.trans[2], 8)
             self.assertAlmostEqual(float(row["qw"]), pose.quat[0], 8)
+
+    def assert_same_or_none(self, written, told):
+        if math.isnan(told):
+            self.assertEqual(written, "")
+        else:
+            self.assertAlmostEqual(float(written), told, 5)
 
     def test_mcap_is_whole_and_holds_the_points_and_pictures(self):
         mcap = Mcap(self.folder / "first/all.mcap")
@@ -165,6 +184,7 @@ class Export(unittest.TestCase):
         clouds = [json.loads(data) for _, data in mcap.on("/pliant/points")]
         files = sorted((self.folder / "first/ply").iterdir())
         self.assertEqual(len(clouds), len(files))
+        strained = 0
         for cloud, file in list(zip(clouds, files))[::20]:
             points = read_points(file)
             data = base64.b64decode(cloud["data"])
@@ -175,6 +195,15 @@ class Export(unittest.TestCase):
                 self.assertEqual(struct.unpack_from("<3f", data, at + offsets["x"]), point[:3])
                 self.assertEqual(struct.unpack_from("<b", data, at + offsets["region"])[0], point[6])
                 self.assertEqual(tuple(data[at + offsets["red"]:at + offsets["blue"] + 1]), point[9:])
+                strain = struct.unpack_from("<f", data, at + offsets["strain"])[0]
+                strained += strain > 0
+                self.assertTrue(strain == 0 or point[6] == -1, "only deformed points are strained")
+        self.assertGreater(strained, 0)
+        frames = [json.loads(data) for _, data in mcap.on("/pliant/frame")]
+        base = next(frame for frame in frames if frame["regions"])["regions"][0]
+        self.assertIsNone(base["joint"], "the base hangs on nothing")
+        statuses = [json.loads(data) for _, data in mcap.on("/pliant/status")]
+        self.assertGreater(max(status["strain_energy"] for status in statuses), 0)
         transforms = [json.loads(data) for _, data in mcap.on("/tf")]
         self.assertEqual(len(transforms), len(table(self.folder / "first/csv/regions.csv")))
         pictures = [json.loads(data) for _, data in mcap.on("/pliant/depth")]

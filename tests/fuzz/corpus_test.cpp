@@ -7,6 +7,7 @@
 #include <iterator>
 #include <vector>
 
+#include "drivers/lcm/messages.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace pliant {
@@ -53,6 +54,22 @@ TEST_P(Corpus, CutShortAndFlippedFilesAreHandled) {
       bytes[i] = before;
     }
   }
+}
+
+/// Damage to a message of another version would be told by its first bytes alone.
+TEST(MessageCorpus, HoldsMessagesOfTheTypesOfToday) {
+  const auto sound = [](const char* name, auto message) {
+    const auto bytes = read_bytes(std::filesystem::path(PLIANT_FUZZ_CORPUS) / "message" / name);
+    std::vector<std::uint8_t> body;
+    for (const std::byte byte : bytes) body.push_back(std::to_integer<std::uint8_t>(byte));
+    return decode(body, message);
+  };
+  EXPECT_TRUE(sound("pose.bin", PoseMessage{}));
+  EXPECT_TRUE(sound("regions.bin", RegionsMessage{}));
+  EXPECT_TRUE(sound("regions_tracked.bin", RegionsMessage{}));
+  EXPECT_TRUE(sound("deformed.bin", DeformedMessage{}));
+  EXPECT_TRUE(sound("status.bin", StatusMessage{}));
+  EXPECT_TRUE(sound("depth.bin", DepthMessage{}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Corpus, ::testing::ValuesIn(kFuzzTargets),

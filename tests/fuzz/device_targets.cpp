@@ -178,9 +178,17 @@ void fuzz_message(Bytes data) {
   StatusMessage status;
   DepthMessage depth;
   if (decode(body, pose)) promise(std::isfinite(pose.trans[0]), "numbers are finite");
-  if (decode(body, regions)) promise(regions.part < regions.parts, "parts are in range");
-  if (decode(body, deformed)) promise(deformed.index.size() == deformed.position.size(), "arrays match");
-  if (decode(body, status)) promise(status.rate >= 0, "rates are no less than none");
+  if (decode(body, regions)) {
+    promise(regions.part < regions.parts, "parts are in range");
+    for (const RegionMessage& region : regions.regions)
+      promise(!region.joint || std::isfinite(region.joint->x), "a joint is somewhere or none");
+  }
+  if (decode(body, deformed)) {
+    promise(deformed.index.size() == deformed.position.size(), "arrays match");
+    promise(deformed.index.size() == deformed.strain.size(), "arrays match");
+  }
+  if (decode(body, status))
+    promise(status.rate >= 0 && status.strain_energy >= 0, "measures are no less than none");
   if (!decode(body, depth)) return;
   promise(intrinsics_fault(depth.camera) == nullptr, "an accepted camera is sound");
   DepthAssembler assembler(depth.camera);

@@ -1,4 +1,5 @@
 // What is tracked arrives at a subscriber, by way of an LCM log file, which needs no network.
+#include <algorithm>
 #include <filesystem>
 
 #include "drivers/lcm/subscriber.hpp"
@@ -24,6 +25,7 @@ TEST(Messages, EveryFrameArrivesWhole) {
   ASSERT_TRUE(end) << end.error().message;
 
   std::int64_t frames = 0, tracking = 0, labels = 0;
+  float most_strain = 0, energy = -1;
   TrackState last_status = TrackState::searching;
   LcmSubscriber::Handlers handlers;
   handlers.regions = [&](const RegionsMessage& message) {
@@ -32,8 +34,12 @@ TEST(Messages, EveryFrameArrivesWhole) {
     tracking += message.state == TrackState::tracking ? 1 : 0;
     labels += static_cast<std::int64_t>(message.labels.size());
   };
+  handlers.deformed = [&](const DeformedMessage& message) {
+    for (const float strain : message.strain) most_strain = std::max(most_strain, strain);
+  };
   handlers.status = [&](const StatusMessage& message) {
     last_status = message.state;
+    energy = message.strain_energy;
     EXPECT_EQ(message.stages.back().name, "total");
   };
   auto subscriber = LcmSubscriber::create("file://" + log + "?speed=0", "TEST", handlers);
@@ -47,6 +53,9 @@ TEST(Messages, EveryFrameArrivesWhole) {
   EXPECT_EQ(counters.of(MessageKind::pose), end->figures.tracked);
   EXPECT_EQ(labels, end->figures.tracked * static_cast<std::int64_t>(model->view().size()));
   EXPECT_EQ(last_status, TrackState::tracking);
+  EXPECT_GT(most_strain, 0) << "the cushion is pressed";
+  EXPECT_GT(energy, 0);
+  EXPECT_EQ(energy, end->figures.last_strain_energy);
   EXPECT_EQ(end->figures.sent.unsent, 0);
   EXPECT_GT(end->figures.latency.count(), 0U);
   std::filesystem::remove(log);

@@ -28,6 +28,7 @@ struct Samples {
     content.utime = 5;
     content.version = "0.1.0";
     content.last_error = "none";
+    content.strain_energy = 0.375F;
     content.stages = stages;
     std::vector<std::uint8_t> buffer(kMaxStatusBytes);
     const auto status = encode_status(content, buffer);
@@ -81,15 +82,23 @@ TEST(LcmDecoding, BringsBackWhatWasEncoded) {
   EXPECT_EQ(regions.regions[2].id, 2);
   EXPECT_EQ(regions.regions[2].parent, 0);
   EXPECT_EQ(regions.regions[2].points, 1002);
+  EXPECT_FALSE(regions.regions[0].joint) << "the base hangs on nothing";
+  ASSERT_TRUE(regions.regions[1].joint);
+  EXPECT_EQ(regions.regions[1].joint->x, sample.regions[1].joint.x);
+  EXPECT_EQ(regions.regions[1].joint->y, sample.regions[1].joint.y);
+  EXPECT_EQ(regions.regions[1].joint->z, sample.regions[1].joint.z);
+  EXPECT_FALSE(regions.regions[2].joint) << "does not touch its parent";
 
   DeformedMessage deformed;
   ASSERT_TRUE(decode(samples.bodies[2], deformed));
   EXPECT_EQ(deformed.num_deformed, 58);
+  ASSERT_EQ(deformed.strain.size(), 58U);
   ASSERT_EQ(deformed.index.size(), 58U);
   for (std::size_t k = 0; k < deformed.index.size(); ++k) {
     const auto i = static_cast<std::size_t>(deformed.index[k]);
     EXPECT_EQ(i, 7 * k);
     EXPECT_EQ(deformed.position[k].z, sample.positions[i].z);
+    EXPECT_EQ(deformed.strain[k], sample.strains[i]);
     // Position minus displacement is where the base's motion puts the point.
     const Vector3 carried =
         sample.result.pose * Vector3(sample.rest[i].x, sample.rest[i].y, sample.rest[i].z);
@@ -102,6 +111,7 @@ TEST(LcmDecoding, BringsBackWhatWasEncoded) {
   ASSERT_TRUE(decode(samples.bodies[3], status));
   EXPECT_EQ(status.version, "0.1.0");
   EXPECT_EQ(status.last_error, "none");
+  EXPECT_EQ(status.strain_energy, 0.375F);
   ASSERT_EQ(status.stages.size(), 2U);
   EXPECT_EQ(status.stages[1].name, "total");
   EXPECT_EQ(status.stages[1].p99, 5);
@@ -150,6 +160,7 @@ std::vector<std::uint8_t> with(std::vector<std::uint8_t> body, std::size_t offse
 TEST(LcmDecoding, RefusesCountsAndNumbersOutOfRange) {
   const Samples samples;
   const double nan = std::numeric_limits<double>::quiet_NaN();
+  const float infinite = std::numeric_limits<float>::infinity(), no_number = static_cast<float>(nan);
   const auto& pose = samples.bodies[0];
   EXPECT_FALSE(decodes(MessageKind::pose, with(pose, 16, nan)));
   EXPECT_FALSE(decodes(MessageKind::pose, with(pose, 40, 3.0))) << "not a unit quaternion";
@@ -168,6 +179,12 @@ TEST(LcmDecoding, RefusesCountsAndNumbersOutOfRange) {
   EXPECT_FALSE(decodes(MessageKind::regions, with<std::int8_t>(regions, labels, -3)));
   EXPECT_FALSE(decodes(MessageKind::regions, with<std::int32_t>(regions, labels - 8, 1)))
       << "labels beyond the model";
+  constexpr std::size_t kJoint = 45 + 82 + 70;  // of the second region, which hangs on the base
+  for (const float wrong : {infinite, no_number})
+    EXPECT_FALSE(decodes(MessageKind::regions, with(regions, kJoint, wrong))) << wrong;
+  const auto untied =
+      with(with(with(regions, kJoint, no_number), kJoint + 4, no_number), kJoint + 8, no_number);
+  EXPECT_TRUE(decodes(MessageKind::regions, untied)) << "a joint may be none as a whole";
 
   const auto& deformed = samples.bodies[2];
   constexpr std::size_t kDeformed = 36, kPoints = 40, kIndices = 44;
@@ -178,8 +195,11 @@ TEST(LcmDecoding, RefusesCountsAndNumbersOutOfRange) {
       << "not ascending";
   EXPECT_FALSE(
       decodes(MessageKind::deformed, with<std::int16_t>(deformed, kIndices + std::size_t{57} * 2, 16384)));
-  EXPECT_FALSE(decodes(MessageKind::deformed, with(deformed, kIndices + std::size_t{58} * 2,
-                                                   std::numeric_limits<float>::infinity())));
+  EXPECT_FALSE(decodes(MessageKind::deformed, with(deformed, kIndices + std::size_t{58} * 2, infinite)));
+  const std::size_t strain = kIndices + std::size_t{58} * (2 + 12 + 12);
+  EXPECT_TRUE(decodes(MessageKind::deformed, with(deformed, strain, 0.5F)));
+  for (const float wrong : {-0.5F, infinite, no_number})
+    EXPECT_FALSE(decodes(MessageKind::deformed, with(deformed, strain, wrong))) << wrong;
 
   const auto& status = samples.bodies[3];
   EXPECT_FALSE(decodes(MessageKind::status, with<std::int32_t>(status, 16, 0)))
@@ -187,6 +207,11 @@ TEST(LcmDecoding, RefusesCountsAndNumbersOutOfRange) {
   EXPECT_FALSE(decodes(MessageKind::status, with<std::int32_t>(status, 16, -1)));
   EXPECT_FALSE(decodes(MessageKind::status, with<std::int32_t>(status, 16, 1 << 30)));
   EXPECT_FALSE(decodes(MessageKind::status, with<std::uint8_t>(status, 21, 0))) << "a zero inside a string";
+  // Behind the fingerprint, the time, "0.1.0" and "" with their lengths and zeros, ids, states and the rate.
+  constexpr std::size_t kEnergy = 8 + 8 + (4 + 6) + (4 + 1) + 8 + 8 + 3 + 4;
+  EXPECT_TRUE(decodes(MessageKind::status, with(status, kEnergy, 2.0F)));
+  for (const float wrong : {-0.5F, infinite, no_number})
+    EXPECT_FALSE(decodes(MessageKind::status, with(status, kEnergy, wrong))) << wrong;
 }
 
 }  // namespace

@@ -44,9 +44,11 @@ TEST(FrameAssembler, AFrameOfManyPartsIsWholeAtItsLast) {
     if (sample.labels[i] != kDeformed) continue;
     ASSERT_EQ(static_cast<std::size_t>(frame.deformed[deformed]), i);
     ASSERT_FLOAT_EQ(frame.position[deformed].z, sample.positions[i].z);
+    ASSERT_EQ(frame.strain[deformed], sample.strains[i]);
     ++deformed;
   }
   EXPECT_EQ(frame.deformed.size(), deformed);
+  EXPECT_EQ(frame.strain.size(), deformed);
   EXPECT_EQ(feed(assembler, messages.encode(sample.result)), 0) << "the same frame again is no new one";
 }
 
@@ -66,6 +68,7 @@ TEST(FrameAssembler, AFrameWithAPartMissingIsGivenUpForTheNext) {
   EXPECT_EQ(assembler.frame().state, TrackState::lost);
   EXPECT_TRUE(assembler.frame().labels.empty());
   EXPECT_TRUE(assembler.frame().deformed.empty());
+  EXPECT_TRUE(assembler.frame().strain.empty());
 }
 
 TEST(FrameAssembler, PointsArePlacedByTheirRegionOrByThemselves) {

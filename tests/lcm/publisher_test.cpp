@@ -60,7 +60,7 @@ TEST(LcmPublisher, BringsEveryMessageToASubscriber) {
   EXPECT_EQ(counters.total(), std::ssize(bodies) + 1);
   EXPECT_EQ(counters.of(MessageKind::pose), 1);
   EXPECT_EQ(counters.of(MessageKind::regions), 2);
-  EXPECT_EQ(counters.of(MessageKind::deformed), 14);
+  EXPECT_EQ(counters.of(MessageKind::deformed), 16);
   EXPECT_EQ(counters.of(MessageKind::status), 1);
   EXPECT_EQ(counters.garbage, 0);
   EXPECT_EQ(labels, 16384);

@@ -1,6 +1,7 @@
 """The Python example, against the classes that lcm-gen makes. Arguments: folders of the examples, of the types and
 of the generated classes."""
 
+import math
 import pathlib
 import socket
 import struct
@@ -28,6 +29,7 @@ def sample_regions():
         region.id, region.parent, region.points = number, number - 1, 100 + number
         region.rms, region.confidence = 0.25, 0.75
         region.trans, region.quat = (0.1, 0.2, 0.3), (1.0, 0.0, 0.0, 0.0)
+        region.joint = (float("nan"),) * 3 if number == 0 else (0.5, 0.25, 0.75)
         message.regions.append(region)
     message.num_regions = 2
     message.labels = [0, 1, -1, -2, 0]
@@ -42,13 +44,14 @@ def sample_deformed():
     message.index = [3, 9]
     message.position = [(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]
     message.displacement = [(0.5, 0.25, 0.125), (0.0, 0.0, -1.0)]
+    message.strain = [0.125, 0.0]
     return message
 
 
 def sample_status():
     message = pliant.status_t()
     message.version, message.source, message.last_error = "0.1.0", "simulated:cushion", "é"
-    message.rate, message.num_stages = 30.0, 2
+    message.rate, message.strain_energy, message.num_stages = 30.0, 0.5, 2
     message.stage = ["surface", "total"]
     message.stage_median, message.stage_p99, message.stage_max = [1, 2], [3, 4], [5, 6]
     return message
@@ -74,16 +77,20 @@ class PythonExample(unittest.TestCase):
         self.assertEqual(list(decoded.labels), [0, 1, decoded.DEFORMED, decoded.NOT_OBSERVED, 0])
         self.assertEqual([region.points for region in decoded.regions], [100, 101])
         self.assertEqual(decoded.regions[1].quat, (1.0, 0.0, 0.0, 0.0))
+        self.assertEqual(decoded.regions[1].joint, (0.5, 0.25, 0.75))
+        self.assertTrue(all(math.isnan(value) for value in decoded.regions[0].joint))
 
         decoded = TYPES.decode(sample_deformed().encode())
         self.assertEqual(decoded.index, (3, 9))
         self.assertEqual([tuple(point) for point in decoded.position], [(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)])
         self.assertEqual(tuple(decoded.displacement[1]), (0.0, 0.0, -1.0))
+        self.assertEqual(decoded.strain, (0.125, 0.0))
 
         decoded = TYPES.decode(sample_status().encode())
         self.assertEqual((decoded.version, decoded.last_error), ("0.1.0", "é"))
         self.assertEqual(decoded.stage, ["surface", "total"])
         self.assertEqual(decoded.stage_max, (5, 6))
+        self.assertEqual(decoded.strain_energy, 0.5)
 
     def test_refuses_every_cut(self):
         for message in (sample_regions(), sample_deformed(), sample_status()):
@@ -130,8 +137,10 @@ class PythonExample(unittest.TestCase):
         self.assertEqual(len(lines), 3, run.stdout)
         self.assertIn("frame 7 tracking", lines[0])
         self.assertIn("1 deformed, 1 not observed", lines[0])
-        self.assertIn("moved up to 1000.0 mm", lines[1])
+        self.assertIn("[0: 100 points, rms 250.00 mm, 1: 101 points, rms 250.00 mm at +0.500 +0.250 +0.750]", lines[0])
+        self.assertIn("moved up to 1000.0 mm, strained up to 12.5 %", lines[1])
         self.assertIn("30.0 frames/s", lines[2])
+        self.assertIn("strain energy 0.500", lines[2])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/track_result.hpp"
@@ -12,6 +13,7 @@ namespace pliant {
 struct SampleResult {
   std::vector<Point3f> rest, positions;
   std::vector<std::int8_t> labels;
+  std::vector<float> strains;
   std::vector<Region> regions;
   TrackResult result;
 
@@ -31,6 +33,7 @@ struct SampleResult {
       labels.push_back(deformed     ? kDeformed
                        : i % 4 == 3 ? kNotObserved
                                     : static_cast<std::int8_t>(i % region_count));
+      strains.push_back(deformed ? 0.01F * static_cast<float>(i % 13) : 0.0F);
     }
     for (std::size_t k = 0; k < region_count; ++k) {
       Region region;
@@ -41,6 +44,11 @@ struct SampleResult {
       region.confidence = 1.0F / static_cast<float>(k + 1);
       region.pose.rotation = rotation_from_small_vector({0.1 * static_cast<double>(k), 0.2, -0.4});
       region.pose.translation = {0.01 * static_cast<double>(k), 0.02, 0.7};
+      // The base hangs on nothing, and the last region does not touch its parent.
+      constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+      const auto place = static_cast<float>(k);
+      const bool hangs = k > 0 && k + 1 < region_count;
+      region.joint = hangs ? Point3f{0.1F * place, -0.05F, 0.65F} : Point3f{kNone, kNone, kNone};
       regions.push_back(region);
     }
     attach();
@@ -52,6 +60,7 @@ struct SampleResult {
     result.regions = regions;
     result.positions = positions;
     result.labels = labels;
+    result.strains = strains;
   }
   /// Not tracked: as the tracker gives it, without spans.
   void lose(TrackState state) {
@@ -59,6 +68,7 @@ struct SampleResult {
     result.regions = {};
     result.positions = {};
     result.labels = {};
+    result.strains = {};
   }
 };
 

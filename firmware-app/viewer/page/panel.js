@@ -101,6 +101,7 @@ export class Panel {
       const rows = [
         row("device", status.device),
         row("confidence", this.last?.confidence.toFixed(2) ?? "–"),
+        row("strain energy", status.strain_energy.toFixed(3)),
         row("tracked / searching / lost", `${status.tracked} / ${status.searching} / ${status.lost}`),
         row("dropped / bad frames", `${status.dropped} / ${status.bad_frames}`),
         row("over budget", String(status.deadline_misses)),

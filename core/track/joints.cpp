@@ -1,0 +1,45 @@
+#include "core/track/joints.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// A border is known to half a patch's radius, and what lies that far from a joint moves by half of it when
+/// the part turns by half a radian.
+constexpr double kGiveOfRadius = 0.25;
+
+}  // namespace
+
+Joints find_joints(const PatchTables& patches, const PatchWarp& warp, const RegionSet& regions) noexcept {
+  struct Sum {
+    Vector3 place = Vector3::Zero(), target = Vector3::Zero();
+    double edges = 0;
+  };
+  std::array<std::array<Sum, 2>, limits::kMaxRegions> sums{};  // to the parent, to others
+  std::array<RigidTransform, limits::kMaxRegions> step;
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (regions[k].alive) step[k] = regions[k].pose * regions[k].last_pose.inverse();
+  const auto add = [&](std::uint8_t own, std::uint8_t other, const PatchBorder& border) {
+    const auto k = static_cast<std::size_t>(warp.home[own]), j = static_cast<std::size_t>(warp.home[other]);
+    if (k == 0 || !regions[k].alive || !regions[j].alive) return;
+    Sum& sum = sums[k][static_cast<std::size_t>(regions[k].parent) == j ? 0 : 1];
+    sum.place += border.edges * border.centre;
+    sum.target += border.edges * (step[j] * (warp.pose[other] * border.centre));
+    sum.edges += border.edges;
+  };
+  for (std::size_t b = 0; b < patches.border_count; ++b) {
+    const PatchBorder& border = patches.borders[b];
+    if (warp.home[border.a] == warp.home[border.b]) continue;
+    add(border.a, border.b, border);
+    add(border.b, border.a, border);
+  }
+  Joints joints;
+  for (std::size_t k = 1; k < regions.size(); ++k) {
+    const Sum& sum = sums[k][sums[k][0].edges > 0 ? 0 : 1];
+    if (!regions[k].alive || !(sum.edges > 0)) continue;
+    joints[k] = {true, sum.place / sum.edges, sum.target / sum.edges, kGiveOfRadius * patches.radius};
+  }
+  return joints;
+}
+
+}  // namespace pliant

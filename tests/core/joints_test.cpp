@@ -1,0 +1,181 @@
+#include "core/track/joints.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/deform/strain.hpp"
+#include "tests/core/track_scene.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::Picture;
+using synthetic::pose_at;
+using synthetic::TrackScene;
+using synthetic::usual_pose;
+
+class FindJoints : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar()); }
+  static void TearDownTestSuite() { shared_.reset(); }
+  void SetUp() override {
+    scene().place(usual_pose());
+    scene().warp->pose.fill(usual_pose());
+    scene().warp->home.fill(0);
+  }
+  static TrackScene& scene() { return *shared_; }
+  static void add_region(std::size_t id, std::int8_t parent) {
+    TrackedRegion& region = scene().regions[id];
+    region.alive = true;
+    region.parent = parent;
+    region.pose = region.last_pose = usual_pose();
+  }
+  /// Patches from `x` on, metres along the bar, belong to `region`.
+  static void give_from(double x, std::int8_t region) {
+    for (std::size_t p = 0; p < scene().patches.count; ++p)
+      if (scene().patches.centres[p].x() >= x) scene().warp->home[p] = region;
+  }
+  static Joints joints() { return find_joints(scene().patches, *scene().warp, scene().regions); }
+  static Vector3 middle(std::int8_t a, std::int8_t b) {
+    Vector3 joint;
+    EXPECT_TRUE(find_joint(scene().patches, *scene().warp, a, b, joint));
+    return joint;
+  }
+
+ private:
+  static std::unique_ptr<TrackScene> shared_;
+};
+std::unique_ptr<TrackScene> FindJoints::shared_;
+
+TEST_F(FindJoints, TiesAPartToItsParentAndTheBaseToNothing) {
+  add_region(1, 0);
+  give_from(0, 1);
+  const Joints found = joints();
+  EXPECT_FALSE(found[0].tied);
+  ASSERT_TRUE(found[1].tied);
+  EXPECT_LT((found[1].place - middle(1, 0)).norm(), 1e-12);
+  EXPECT_LT((found[1].target - usual_pose() * middle(1, 0)).norm(), 1e-12) << "where it is already";
+  EXPECT_GT(found[1].give, 0);
+  EXPECT_LT(found[1].give, scene().patches.radius);
+  for (std::size_t k = 2; k < found.size(); ++k) EXPECT_FALSE(found[k].tied) << k;
+}
+
+TEST_F(FindJoints, FollowsTheParentsStep) {
+  add_region(1, 0);
+  give_from(0, 1);
+  const RigidTransform step = pose_at({0.02, -0.01, 0.005}, {0, 1, 1}, 0.1);
+  scene().regions[0].pose = step * usual_pose();
+  scene().regions[1].pose = pose_at({0.1, 0.1, 0.1}, {1, 0, 0}, 0.3) * usual_pose();  // of no account
+  const Joints found = joints();
+  EXPECT_LT((found[1].target - step * (usual_pose() * found[1].place)).norm(), 1e-12);
+}
+
+TEST_F(FindJoints, TiesToTheParentBeforeOthers) {
+  // The middle part touches both ends and hangs on the left one.
+  add_region(1, 0);
+  add_region(2, 1);
+  give_from(-0.06, 1);
+  give_from(0.06, 2);
+  Joints found = joints();
+  ASSERT_TRUE(found[1].tied);
+  EXPECT_LT((found[1].place - middle(1, 0)).norm(), 1e-12);
+  ASSERT_TRUE(found[2].tied);
+  EXPECT_LT((found[2].place - middle(2, 1)).norm(), 1e-12);
+
+  // The end hangs on the base, which it does not touch: what it touches holds it.
+  scene().regions[2].parent = 0;
+  const RigidTransform step = pose_at({0.01, 0, 0});
+  scene().regions[1].pose = step * usual_pose();
+  found = joints();
+  ASSERT_TRUE(found[2].tied);
+  EXPECT_LT((found[2].place - middle(2, 1)).norm(), 1e-12);
+  EXPECT_LT((found[2].target - step * (usual_pose() * found[2].place)).norm(), 1e-12);
+}
+
+TEST_F(FindJoints, APartThatTouchesNothingAliveIsFree) {
+  add_region(1, 0);
+  EXPECT_FALSE(joints()[1].tied) << "it has no patch";
+  add_region(2, 0);
+  give_from(-0.06, 1);
+  give_from(0.06, 2);
+  scene().regions[1].alive = false;
+  const Joints found = joints();
+  EXPECT_FALSE(found[1].tied);
+  EXPECT_FALSE(found[2].tied);
+}
+
+/// A smooth round rod along x, longer than the picture is wide: nothing seen of it tells how it slides.
+Geometry endless_rod() {
+  constexpr int kAround = 48, kAlong = 140;
+  constexpr double kRadius = 0.04, kLength = 1.4;
+  Geometry rod;
+  for (int r = 0; r <= kAlong; ++r)
+    for (int c = 0; c < kAround; ++c) {
+      const double angle = 2 * std::numbers::pi * c / kAround;
+      rod.vertices.push_back({static_cast<float>(kLength * (static_cast<double>(r) / kAlong - 0.5)),
+                              static_cast<float>(kRadius * std::cos(angle)),
+                              static_cast<float>(kRadius * std::sin(angle))});
+    }
+  for (int r = 0; r < kAlong; ++r)
+    for (int c = 0; c < kAround; ++c) {
+      const auto a = static_cast<std::uint32_t>(r * kAround + c);
+      const auto b = static_cast<std::uint32_t>(r * kAround + (c + 1) % kAround);
+      rod.triangles.push_back({a, b, b + kAround});
+      rod.triangles.push_back({a, b + kAround, a + kAround});
+    }
+  return rod;
+}
+
+/// Aligns the rod's right half for some frames, each of which predicts that it slides on by 2 mm; how far it
+/// came, metres. The rod stands still.
+double slide(TrackScene& scene, const RigidTransform& truth, bool tied, double& give) {
+  constexpr int kFrames = 15;
+  constexpr double kStep = 0.002;
+  scene.place(truth);
+  TrackedRegion& part = scene.regions[1];
+  part.alive = true;
+  part.parent = 0;
+  part.pose = truth;
+  const Vector3 along = truth.rotation * Vector3(1, 0, 0);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    scene.regions[0].pose = truth;
+    part.last_pose = part.pose;
+    part.pose.translation += kStep * along;
+    part.predicted = part.pose;
+    for (int round = 0; round < 4; ++round) {
+      AssociateSettings associate_settings;
+      associate_settings.points = scene.tables.size;
+      associate_settings.gate = 20 * kUnitsPerMillimetre;
+      associate(scene.tables, scene.surface, scene.projector, scene.regions, associate_settings,
+                scene.points);
+      AlignSettings align_settings;
+      align_settings.widest = associate_settings.gate;
+      const Joints joints = find_joints(scene.patches, *scene.warp, scene.regions);
+      give = joints[1].give;
+      align(scene.surface, align_settings, tied ? joints : Joints{}, scene.points, scene.regions);
+    }
+  }
+  return (part.pose.translation - truth.translation).dot(along);
+}
+
+TEST(AlignAtAJoint, HoldsWhatSlidesAlongItself) {
+  TrackScene scene(endless_rod(), 0.012);
+  const RigidTransform truth = pose_at({0, 0, 0.75});
+  scene.see_body(truth, 0.001);
+  scene.warp->pose.fill(truth);
+  for (std::size_t p = 0; p < scene.patches.count; ++p)
+    scene.warp->home[p] = scene.patches.centres[p].x() < 0 ? 0 : 1;
+  for (std::size_t i = 0; i < scene.tables.size; ++i)
+    scene.points.home[i] = scene.warp->home[scene.patches.patch_of[i]];
+  double give = 0;
+  const double free = slide(scene, truth, false, give);
+  const double tied = slide(scene, truth, true, give);
+  ASSERT_GT(give, 0);
+  EXPECT_LT(std::fabs(tied), give);
+  EXPECT_GT(free, 2 * give) << "the surface alone does not hold it";
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,97 @@
+#include "core/track/steady.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "tests/core/synthetic.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::degrees_between;
+using synthetic::pose_at;
+
+constexpr double kNoise = 0.001, kHalfRadius = 0.05;
+const Vector3 kCentre(0.02, -0.01, 0.03);
+
+RigidTransform start() {
+  return pose_at({0.1, -0.05, 0.8}, {1, 2, 3}, 0.7);
+}
+RigidTransform shifted(const RigidTransform& pose, const Vector3& shift) {
+  return {pose.rotation, pose.translation + shift};
+}
+RigidTransform turned(const RigidTransform& pose, double angle) {
+  const Matrix3 turn = synthetic::turn({0.2, 1, -0.4}, angle);
+  const Vector3 at = pose * kCentre;
+  return RigidTransform{turn, at - turn * at} * pose;
+}
+RigidTransform steady(const RigidTransform& before, const RigidTransform& after) {
+  return steadied(before, after, kCentre, kHalfRadius, kNoise);
+}
+double in_degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
+/// How far the centre went, metres.
+double way(const RigidTransform& from, const RigidTransform& to) {
+  return (to * kCentre - from * kCentre).norm();
+}
+
+TEST(Steadied, NothingMovesWhereNothingMoved) {
+  const RigidTransform out = steady(start(), start());
+  EXPECT_LT(way(start(), out), 1e-12);
+  EXPECT_LT(degrees_between(out.rotation, start().rotation), 1e-9);
+}
+
+TEST(Steadied, AStepThatNoiseExplainsIsMostlySuppressed) {
+  const Vector3 step(0.2 * kNoise, 0, 0);
+  EXPECT_LT(way(start(), steady(start(), shifted(start(), step))), 0.05 * step.norm());
+  const double angle = 0.2 * kNoise / kHalfRadius;
+  const RigidTransform out = steady(start(), turned(start(), angle));
+  EXPECT_LT(degrees_between(out.rotation, start().rotation), 0.05 * in_degrees(angle));
+}
+
+TEST(Steadied, HalfOfAStepAsLargeAsTheNoiseIsTaken) {
+  EXPECT_NEAR(way(start(), steady(start(), shifted(start(), {0, kNoise, 0}))), 0.5 * kNoise, 1e-9);
+}
+
+TEST(Steadied, ALargeStepIsFollowed) {
+  for (const double times : {10.0, 100.0}) {
+    const RigidTransform moved = shifted(start(), Vector3(0, 0.6, 0.8) * (times * kNoise));
+    EXPECT_LT(way(moved, steady(start(), moved)), kNoise / times * 1.01);
+    const double angle = times * kNoise / kHalfRadius;
+    const RigidTransform spun = turned(start(), angle);
+    const RigidTransform out = steady(start(), spun);
+    EXPECT_LT(way(spun, out), 1e-9) << "it turns about the centre";
+    EXPECT_LT(degrees_between(out.rotation, spun.rotation) * kHalfRadius / in_degrees(1),
+              kNoise / times * 1.01);
+  }
+}
+
+TEST(Steadied, LagsByLessThanTheNoiseBehindSteadyMotion) {
+  for (const double speed : {0.1, 0.5, 1.0, 3.0, 20.0}) {
+    RigidTransform truth = start(), out = start();
+    double lag = 0;
+    for (int frame = 0; frame < 300; ++frame) {
+      truth = shifted(truth, {0.6 * speed * kNoise, 0, 0.8 * speed * kNoise});
+      out = steady(out, truth);
+      lag = std::max(lag, way(out, truth));
+    }
+    EXPECT_LT(lag, kNoise) << speed;
+  }
+}
+
+TEST(Steadied, HoldsStillWhatTrembles) {
+  RigidTransform out = start();
+  double most = 0;
+  for (int frame = 0; frame < 200; ++frame) {
+    const double side = frame % 2 == 0 ? 0.3 : -0.3;
+    out = steady(out, shifted(start(), {side * kNoise, 0, 0}));
+    most = std::max(most, way(out, start()));
+  }
+  EXPECT_LT(most, 0.15 * 0.3 * kNoise);
+}
+
+}  // namespace
+}  // namespace pliant
