@@ -27,8 +27,9 @@ Result<LcmLog> LcmLog::open(const std::filesystem::path& path) {
   LcmLog log(file);
   std::array<std::uint8_t, 4> begin{};
   wire::Reader in(begin);
-  if (std::fread(begin.data(), 1, begin.size(), file) != begin.size() || in.get<std::uint32_t>() != kSync)
-    return bad("is not an LCM log");
+  const std::size_t got = std::fread(begin.data(), 1, begin.size(), file);
+  if (got == 0 && std::ferror(file) == 0) return bad("is empty");
+  if (got != begin.size() || in.get<std::uint32_t>() != kSync) return bad("is not an LCM log");
   std::rewind(file);
   return log;
 }
