@@ -57,6 +57,11 @@ run() { in_root "$@" && "${words[@]}"; }
 
 mode=unpacked
 emulator=()
+case $arch in
+  "$own") ;;
+  arm64) emulator=(qemu-aarch64 -L "$sysroot") ;;
+  armhf) emulator=(qemu-arm -L "$sysroot") ;;
+esac
 if [ "${PLIANT_TEST_ROOT:-}" != unpacked ] && [ "$(id -u)" -eq 0 ] && command -v debootstrap >/dev/null && let_kernel_run "$arch"; then
   mode=chroot
 fi
@@ -83,11 +88,6 @@ if [ $mode = chroot ]; then
   prefix=
 else
   for package in "$packages"/*.deb; do dpkg-deb -x "$package" "$root"; done
-  case $arch in
-    "$own") ;;
-    arm64) emulator=(qemu-aarch64 -L "$sysroot") ;;
-    armhf) emulator=(qemu-arm -L "$sysroot") ;;
-  esac
 fi
 
 [ "$(run /usr/bin/pliant --version)" = "pliant $version" ] || die "pliant --version tells another version"
