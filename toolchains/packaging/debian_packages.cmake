@@ -45,10 +45,10 @@ file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/conffiles "/etc/pliant/pliant.toml\n${con
 set(CPACK_DEBIAN_VIEWER_PACKAGE_NAME pliant-viewer)
 set(CPACK_DEBIAN_VIEWER_PACKAGE_SECTION misc)
 set(CPACK_DEBIAN_VIEWER_PACKAGE_DEPENDS "pliant (= ${PROJECT_VERSION}), ${PLIANT_DEB_VIEWER_DEPENDS}")
-set(CPACK_DEBIAN_VIEWER_DESCRIPTION "What 'pliant view' runs: it listens to a tracker, here or on another machine, and
-shows in a web browser the object in three dimensions, its regions, what is
-deformed, the depth picture, and how the tracker fares. The page comes with the
-package; nothing is fetched from anywhere.")
+set(CPACK_DEBIAN_VIEWER_DESCRIPTION "What 'pliant view' runs: it listens to a tracker, here or on
+another machine, and shows in a web browser the object in three dimensions, its
+regions, what is deformed, the depth picture, and how the tracker fares. The
+page comes with the package; nothing is fetched from anywhere.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libpliant-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
