@@ -102,7 +102,10 @@ run /usr/bin/pliant model build simulated:box -o "$([ $mode = chroot ] && echo /
 [ $mode = unpacked ] || cp "$root/tmp/box.model" "$scratch/"
 
 # The page, as a browser fetches it: every file that it names, and three.js whole.
-in_root /usr/bin/pliant view --port 0 --lcm-url 'udpm://239.255.76.67:7667?ttl=0'
+view=(/usr/bin/pliant view)
+# An emulator that runs one program does not run those that it starts.
+[ $mode = chroot ] || [ "$arch" = "$own" ] || view=(/usr/libexec/pliant/pliant-view)
+in_root "${view[@]}" --port 0 --lcm-url 'udpm://239.255.76.67:7667?ttl=0'
 "${words[@]}" >"$scratch/view" 2>"$scratch/view.errors" &
 viewer=$!
 port=
