@@ -14,7 +14,7 @@ shift 2
 case $arch in arm64 | armhf) ;; *) die "unknown architecture '$arch'; arm64 and armhf are known" ;; esac
 
 packages=(libc6-dev libstdc++-12-dev libeigen3-dev libnanoflann-dev libfmt-dev libcli11-dev
-  libtomlplusplus-dev nlohmann-json3-dev libpng-dev nettle-dev liblcm-dev libopenni2-dev libusb-1.0-0-dev libgtest-dev libbenchmark-dev "$@")
+  libtomlplusplus-dev nlohmann-json3-dev libpng-dev nettle-dev liblcm-dev libopenni2-dev libusb-1.0-0-dev libcivetweb-dev libgtest-dev libbenchmark-dev "$@")
 stamp=$dir/.packages
 [ -f "$stamp" ] && [ -d "$dir/.shlibs" ] && [ "$(cat "$stamp")" = "${packages[*]}" ] && exit 0
 

@@ -27,31 +27,41 @@ Result<LcmLog> LcmLog::open(const std::filesystem::path& path) {
   LcmLog log(file);
   std::array<std::uint8_t, 4> begin{};
   wire::Reader in(begin);
-  if (std::fread(begin.data(), 1, begin.size(), file) != begin.size() || in.get<std::uint32_t>() != kSync)
-    return bad("is not an LCM log");
+  const std::size_t got = std::fread(begin.data(), 1, begin.size(), file);
+  if (got == 0 && std::ferror(file) == 0) return bad("is empty");
+  if (got != begin.size() || in.get<std::uint32_t>() != kSync) return bad("is not an LCM log");
   std::rewind(file);
   return log;
 }
 
-bool LcmLog::find_begin() {
+bool LcmLog::find_begin(bool& damaged) {
   std::uint32_t seen = 0;
   for (std::size_t passed = 0;; ++passed) {
     const int byte = std::fgetc(file_.get());
-    if (byte == EOF) return false;
+    if (byte == EOF) {
+      if (passed > 0) count(damaged);
+      return false;
+    }
     seen = seen << 8 | static_cast<std::uint32_t>(byte);
     if (seen == kSync && passed >= 3) {
-      if (passed > 3) ++damages_;
+      if (passed > 3) count(damaged);
       return true;
     }
   }
 }
 
+void LcmLog::count(bool& damaged) {
+  damages_ += damaged ? 0 : 1;
+  damaged = true;
+}
+
 bool LcmLog::next(LcmLogEvent& event) {
-  while (find_begin()) {
+  bool damaged = false;  // what is passed over up to the next event is one stretch
+  while (find_begin(damaged)) {
     std::array<std::uint8_t, kHeaderBytes> header{};
     const off_t after_sync = ftello(file_.get());
     if (std::fread(header.data(), 1, header.size(), file_.get()) != header.size()) {
-      ++damages_;
+      count(damaged);
       return false;
     }
     wire::Reader in(header);
@@ -69,7 +79,7 @@ bool LcmLog::next(LcmLogEvent& event) {
     }
     if (sound) return true;
     // What looked like a begin was none, or the log is cut off: look on right behind it.
-    ++damages_;
+    count(damaged);
     if (fseeko(file_.get(), after_sync, SEEK_SET) != 0) return false;
   }
   return false;

@@ -37,7 +37,9 @@ class LcmLog {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   explicit LcmLog(std::FILE* file) : file_(file) {}
-  [[nodiscard]] bool find_begin();
+  [[nodiscard]] bool find_begin(bool& damaged);
+  /// A stretch is counted once: `damaged` says whether it was.
+  void count(bool& damaged);
 
   std::unique_ptr<std::FILE, Close> file_;
   std::int64_t damages_ = 0;

@@ -66,8 +66,10 @@ int export_log(const ExportOptions& options) {
                     figures->incomplete));
   if (figures->garbage > 0)
     print_warning(fmt::format("{} messages of other types or damaged were left out", figures->garbage));
-  if (figures->damaged)
-    print_warning("the log ends in the middle of a message; what came before was written");
+  if (figures->damages > 0)
+    print_warning(fmt::format("{} damaged stretch{} of the log {} left out; what is whole was written",
+                              figures->damages, figures->damages == 1 ? "" : "es",
+                              figures->damages == 1 ? "was" : "were"));
   return kExitDone;
 }
 

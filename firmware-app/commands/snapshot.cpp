@@ -71,7 +71,7 @@ int draw(const Seen& seen, const std::string& output) {
   }
   if (seen.have_status)
     view.notes.push_back(fmt::format("{:.1f} frames/s, latency {:.1f} ms, device {}", seen.status.rate,
-                                     seen.status.latency_median / 1000.0, device_word(seen.status.device)));
+                                     seen.status.latency_median / 1000.0, name_of(seen.status.device)));
   const Canvas canvas = draw_scene(view);
   if (const Outcome written = write_png_rgb8(output, canvas.width(), canvas.height(), canvas.rgb()); !written)
     return report(written.error());

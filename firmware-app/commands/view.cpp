@@ -57,7 +57,8 @@ int view(const ViewOptions& options) {
   if (words[0].empty())
     return report(
         {ErrorKind::bad_input,
-         "the web viewer is not installed with this program; ./dev view builds it from the sources"});
+         "the web viewer is not installed: it is in the package pliant-viewer, and ./dev view builds it from "
+         "the sources"});
   if (words[6] == "none")
     return report(
         {ErrorKind::bad_input, "the config publishes nothing (url \"none\"): there is nothing to view"});

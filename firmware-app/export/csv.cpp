@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "firmware-app/export/exporters.hpp"
+#include "firmware-app/outputs/status_counts.hpp"
 #include "firmware-app/outputs/words.hpp"
 
 namespace pliant {
@@ -17,7 +18,7 @@ namespace {
 /// One table; the first failure stays and shows in finish().
 class Table {
  public:
-  Outcome open(const std::string& path, const char* columns) {
+  Outcome open(const std::string& path, const std::string& columns) {
     path_ = path;
     file_.reset(std::fopen(path.c_str(), "we"));
     if (!file_) return failure();
@@ -87,14 +88,12 @@ class CsvExporter final : public LogExporter {
     if (Outcome opened = deformed_.open(path("deformed.csv"), "utime,frame,point,x,y,z,dx,dy,dz,strain");
         !opened)
       return opened;
-    if (Outcome opened = status_.open(
-            path("status.csv"),
-            "utime,version,source,frame,state,device,rate_hz,strain_energy,latency_median_us,latency_p99_us,"
-            "latency_max_us,"
-            "tracked,searching,lost,dropped,bad_frames,deadline_misses,unsent,send_failures,workspace_bytes,"
-            "rss_bytes,heap_calls,page_faults,last_error");
-        !opened)
-      return opened;
+    std::string columns =
+        "utime,version,source,frame,state,device,stream_fault,rate_hz,strain_energy,latency_median_us,"
+        "latency_p99_us,"
+        "latency_max_us";
+    for (const NamedCount& about : kStatusCounts) columns += std::string(",") + about.name;
+    if (Outcome opened = status_.open(path("status.csv"), columns + ",last_error"); !opened) return opened;
     return stages_.open(path("stages.csv"), "utime,stage,median_us,p99_us,max_us");
   }
 
@@ -122,12 +121,12 @@ class CsvExporter final : public LogExporter {
   }
 
   Outcome status(std::int64_t /*received_us*/, const StatusMessage& s) override {
-    status_.row(fmt::format("{},{},{},{},{},{},{:.6g},{:.6g},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}",
-                            s.utime, quoted(s.version), quoted(s.source), s.frame, state_word(s.state),
-                            device_word(s.device), s.rate, s.strain_energy, s.latency_median, s.latency_p99,
-                            s.latency_max, s.tracked, s.searching, s.lost, s.dropped, s.bad_frames,
-                            s.deadline_misses, s.unsent, s.send_failures, s.workspace_bytes, s.rss_bytes,
-                            s.heap_calls, s.page_faults, quoted(s.last_error)));
+    std::string counts;
+    for (const NamedCount& about : kStatusCounts) counts += fmt::format(",{}", s.*about.count);
+    status_.row(fmt::format("{},{},{},{},{},{},{},{:.6g},{:.6g},{},{},{}{},{}", s.utime, quoted(s.version),
+                            quoted(s.source), s.frame, state_word(s.state), name_of(s.device),
+                            name_of(s.stream_fault), s.rate, s.strain_energy, s.latency_median, s.latency_p99,
+                            s.latency_max, counts, quoted(s.last_error)));
     for (const StageMessage& stage : s.stages)
       stages_.row(
           fmt::format("{},{},{},{},{}", s.utime, quoted(stage.name), stage.median, stage.p99, stage.max));

@@ -10,6 +10,7 @@
 #include "firmware-app/export/exporters.hpp"
 #include "firmware-app/export/foxglove_schemas.hpp"
 #include "firmware-app/export/mcap_writer.hpp"
+#include "firmware-app/outputs/status_counts.hpp"
 #include "firmware-app/outputs/words.hpp"
 
 namespace pliant {
@@ -98,23 +99,19 @@ class FoxgloveExporter final : public LogExporter {
     for (const StageMessage& stage : s.stages)
       stages.push_back(
           {{"name", stage.name}, {"median_us", stage.median}, {"p99_us", stage.p99}, {"max_us", stage.max}});
-    return put(status_, received_us, s.utime,
-               {{"utime", s.utime},
-                {"state", state_word(s.state)},
-                {"device", device_word(s.device)},
-                {"rate", s.rate},
-                {"strain_energy", s.strain_energy},
-                {"latency_median_us", s.latency_median},
-                {"latency_p99_us", s.latency_p99},
-                {"latency_max_us", s.latency_max},
-                {"tracked", s.tracked},
-                {"searching", s.searching},
-                {"lost", s.lost},
-                {"dropped", s.dropped},
-                {"bad_frames", s.bad_frames},
-                {"rss_bytes", s.rss_bytes},
-                {"last_error", s.last_error},
-                {"stages", stages}});
+    Json message = {{"utime", s.utime},
+                    {"state", state_word(s.state)},
+                    {"device", name_of(s.device)},
+                    {"stream_fault", name_of(s.stream_fault)},
+                    {"rate", s.rate},
+                    {"strain_energy", s.strain_energy},
+                    {"latency_median_us", s.latency_median},
+                    {"latency_p99_us", s.latency_p99},
+                    {"latency_max_us", s.latency_max}};
+    for (const NamedCount& about : kStatusCounts) message[about.name] = s.*about.count;
+    message["last_error"] = s.last_error;
+    message["stages"] = stages;
+    return put(status_, received_us, s.utime, message);
   }
 
   Outcome depth(std::int64_t received_us, const ReceivedDepth& picture) override {

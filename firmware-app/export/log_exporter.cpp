@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "drivers/lcm/event_log.hpp"
+#include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/lcm_url.hpp"
 
 namespace pliant {
 
@@ -28,9 +29,9 @@ class Walker {
   Walker(std::span<const ReceivedModel> models, std::span<LogExporter* const> exporters)
       : models_(models), exporters_(exporters) {}
 
-  Outcome take(const LoggedEvent& event, std::string_view suffix) {
+  Outcome take(const LcmLogEvent& event, std::string_view suffix) {
     const auto is = [&](MessageKind kind) { return suffix == channel_suffix(kind); };
-    const std::int64_t at = event.received_us;
+    const std::int64_t at = event.utime;
     if (is(MessageKind::pose) && decode(event.body, pose_))
       return tell([&](LogExporter& out) { return out.pose(at, pose_); });
     if (is(MessageKind::regions) && decode(event.body, regions_))
@@ -98,12 +99,12 @@ Error nothing_in(const std::string& path, std::string_view prefix, const std::se
 }  // namespace
 
 Result<std::vector<ReceivedModel>> models_in_log(const std::string& path, std::string_view prefix) {
-  Result<EventLogReader> log = EventLogReader::open(path);
+  Result<LcmLog> log = LcmLog::open(path);
   if (!log) return log.error();
   std::vector<ReceivedModel> models;
   ModelAssembler assembler;
   ModelMessage message;
-  LoggedEvent event;
+  LcmLogEvent event;
   while (models.size() < kMostModels && log->next(event)) {
     if (suffix_of(event.channel, prefix) != channel_suffix(MessageKind::model)) continue;
     if (!decode(event.body, message) || !assembler.take(message)) continue;
@@ -117,17 +118,20 @@ Result<std::vector<ReceivedModel>> models_in_log(const std::string& path, std::s
 
 Result<LogFigures> walk_log(const std::string& path, std::string_view prefix,
                             std::span<const ReceivedModel> models, std::span<LogExporter* const> exporters) {
-  Result<EventLogReader> log = EventLogReader::open(path);
+  Result<LcmLog> log = LcmLog::open(path);
   if (!log) return log.error();
   Walker walker(models, exporters);
   std::set<std::string> others;
   bool any = false;
-  LoggedEvent event;
+  LcmLogEvent event;
   while (log->next(event)) {
     const std::string_view suffix = suffix_of(event.channel, prefix);
     if (suffix.empty()) {
       const std::size_t end = event.channel.rfind("_REGIONS");
-      if (end != std::string::npos && others.size() < 4) others.insert(event.channel.substr(0, end));
+      if (end == std::string::npos || others.size() >= 4) continue;
+      // A name may hold anything: only what --prefix would take is advised.
+      if (std::string other = event.channel.substr(0, end); check_channel_prefix(other))
+        others.insert(std::move(other));
       continue;
     }
     any = true;
@@ -137,7 +141,7 @@ Result<LogFigures> walk_log(const std::string& path, std::string_view prefix,
   for (LogExporter* exporter : exporters)
     if (Outcome done = exporter->finish(); !done) return done.error();
   LogFigures figures = walker.figures();
-  figures.damaged = log->damaged();
+  figures.damages = log->damages();
   return figures;
 }
 

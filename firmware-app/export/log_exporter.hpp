@@ -48,7 +48,7 @@ struct LogFigures {
   std::int64_t tracked = 0;     ///< of them
   std::int64_t incomplete = 0;  ///< frames of which a message is missing
   std::int64_t garbage = 0;     ///< bodies on the tracker's channels that are not sound
-  bool damaged = false;         ///< the file ends in the middle of an event
+  std::int64_t damages = 0;     ///< stretches of the file that are no event: cut off, or overwritten
 };
 
 /// The models announced in a log, each once; more than 16 are left out.

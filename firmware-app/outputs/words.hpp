@@ -1,4 +1,5 @@
-// The words for states, the same everywhere.
+// The words for the states of tracking, the same everywhere; those of devices:
+// drivers/depth_source/device_state.hpp.
 #pragma once
 
 #include "drivers/lcm/messages.hpp"
@@ -13,26 +14,6 @@ namespace pliant {
       return "tracking";
     case TrackState::lost:
       return "lost";
-  }
-  return "unknown";
-}
-
-[[nodiscard]] constexpr const char* device_word(DeviceState state) {
-  switch (state) {
-    case DeviceState::absent:
-      return "absent";
-    case DeviceState::opening:
-      return "opening";
-    case DeviceState::streaming:
-      return "streaming";
-    case DeviceState::stalled:
-      return "stalled";
-    case DeviceState::lost:
-      return "lost";
-    case DeviceState::reopening:
-      return "reopening";
-    case DeviceState::ended:
-      return "ended";
   }
   return "unknown";
 }

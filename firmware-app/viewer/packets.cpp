@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/geometry_files/region_colours.hpp"
+#include "firmware-app/outputs/status_counts.hpp"
 #include "firmware-app/outputs/words.hpp"
 #include "firmware-app/pictures/displacement_colours.hpp"
 #include "firmware-app/viewer/stream.hpp"
@@ -74,27 +75,21 @@ Bytes status_packet(const StatusMessage& s) {
   for (const StageMessage& stage : s.stages)
     stages.push_back(
         {{"name", stage.name}, {"median", stage.median}, {"p99", stage.p99}, {"max", stage.max}});
-  return packet(PacketKind::status, {{"version", s.version},
-                                     {"source", s.source},
-                                     {"frame", s.frame},
-                                     {"state", state_word(s.state)},
-                                     {"device", device_word(s.device)},
-                                     {"rate", s.rate},
-                                     {"strain_energy", s.strain_energy},
-                                     {"latency_median", s.latency_median},
-                                     {"latency_p99", s.latency_p99},
-                                     {"latency_max", s.latency_max},
-                                     {"stages", stages},
-                                     {"tracked", s.tracked},
-                                     {"searching", s.searching},
-                                     {"lost", s.lost},
-                                     {"dropped", s.dropped},
-                                     {"bad_frames", s.bad_frames},
-                                     {"deadline_misses", s.deadline_misses},
-                                     {"unsent", s.unsent},
-                                     {"send_failures", s.send_failures},
-                                     {"rss_bytes", s.rss_bytes},
-                                     {"last_error", s.last_error}});
+  Json header = {{"version", s.version},
+                 {"source", s.source},
+                 {"frame", s.frame},
+                 {"state", state_word(s.state)},
+                 {"device", name_of(s.device)},
+                 {"stream_fault", name_of(s.stream_fault)},
+                 {"rate", s.rate},
+                 {"strain_energy", s.strain_energy},
+                 {"latency_median", s.latency_median},
+                 {"latency_p99", s.latency_p99},
+                 {"latency_max", s.latency_max},
+                 {"stages", stages},
+                 {"last_error", s.last_error}};
+  for (const NamedCount& about : kStatusCounts) header[about.name] = s.*about.count;
+  return packet(PacketKind::status, header);
 }
 
 Bytes model_packet(const ReceivedModel& model) {

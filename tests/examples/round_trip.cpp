@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bot_core/rigid_transform_t.hpp"
-#include "drivers/lcm/event_log.hpp"
+#include "drivers/lcm/lcm_log.hpp"
 #include "pliant/deformed_t.hpp"
 #include "pliant/depth_t.hpp"
 #include "pliant/model_t.hpp"
@@ -27,7 +27,7 @@ bool same(const std::vector<std::uint8_t>& body) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  auto log = pliant::EventLogReader::open(argc > 1 ? argv[1] : "");
+  auto log = pliant::LcmLog::open(argc > 1 ? argv[1] : "");
   if (!log) return 2;
   const std::map<std::string, bool (*)(const std::vector<std::uint8_t>&)> checks = {
       {"PLIANT_POSE", same<bot_core::rigid_transform_t>},
@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
       {"PLIANT_DEPTH", same<pliant::depth_t>},
       {"PLIANT_MODEL", same<pliant::model_t>}};
   std::map<std::string, int> counts;
-  pliant::LoggedEvent event;
+  pliant::LcmLogEvent event;
   while (log->next(event)) {
     const auto check = checks.find(event.channel);
     if (check == checks.end()) continue;

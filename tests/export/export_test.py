@@ -249,8 +249,22 @@ class Export(unittest.TestCase):
         ended = subprocess.run([program, "export", cut, "--tum", self.folder / "cut.txt"], capture_output=True,
                                text=True)
         self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertIn("ends in the middle", ended.stderr)
+        self.assertIn("1 damaged stretch", ended.stderr)
         self.assertTrue((self.folder / "path.txt").read_text().startswith((self.folder / "cut.txt").read_text()))
+
+    def test_what_follows_damage_in_a_log_is_exported(self):
+        data = bytearray((self.folder / "run.log").read_bytes())
+        middle = data.index(b"PLIANT_POSE", len(data) // 2)
+        data[middle - 8:middle - 4] = b"\x7f\xff\xff\xff"  # the length of the channel's name
+        (self.folder / "damaged.log").write_bytes(data)
+        ended = subprocess.run([program, "export", self.folder / "damaged.log", "--tum", self.folder / "damaged.txt"],
+                               capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertIn("1 damaged stretch", ended.stderr)
+        all_lines = (self.folder / "path.txt").read_text().splitlines()
+        lines = (self.folder / "damaged.txt").read_text().splitlines()
+        self.assertEqual(len(lines), len(all_lines) - 1)
+        self.assertEqual(lines[-1], all_lines[-1])
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 // messages.
 #include <linux/videodev2.h>
 #include <poll.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -13,33 +12,15 @@
 
 #include "drivers/lcm/depth_assembler.hpp"
 #include "drivers/lcm/depth_log.hpp"
-#include "drivers/lcm/lcm_log.hpp"
 #include "drivers/openni2/oni_layout.hpp"
 #include "drivers/v4l2/v4l2.hpp"
 #include "tests/fuzz/promises.hpp"
+#include "tests/fuzz/scratch_file.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace pliant {
 
 namespace {
-
-/// An anonymous file with these bytes, removed when it is closed.
-class Scratch {
- public:
-  explicit Scratch(Bytes data) : file_(std::tmpfile()) {
-    promise(file_ != nullptr, "a scratch file can be made");
-    promise(std::fwrite(data.data(), 1, data.size(), file_) == data.size(), "it takes the bytes");
-    std::rewind(file_);
-  }
-  ~Scratch() { std::fclose(file_); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::FILE* get() const { return file_; }
-  [[nodiscard]] std::string path() const { return "/proc/self/fd/" + std::to_string(fileno(file_)); }
-
- private:
-  std::FILE* file_;
-};
 
 /// A kernel whose every answer comes out of the input: one byte says whether the call fails (0), leaves the
 /// argument as it is (1), or fills it with what follows (any other).
@@ -105,11 +86,6 @@ class FuzzKernel final : public V4l2System {
   std::list<std::vector<std::byte>> memory_;
 };
 
-void check_line(const std::string& text) {
-  promise(!text.empty() && text.size() < 2000, "a fault is told, shortly");
-  for (const char c : text) promise(c != '\n' && c != '\r' && c != '\0', "in one line");
-}
-
 /// Every reading can be read.
 void read_frame(const DepthFrame& frame) {
   volatile std::uint16_t sink = 0;
@@ -121,7 +97,7 @@ void read_frame(const DepthFrame& frame) {
 }  // namespace
 
 void fuzz_oni(Bytes data) {
-  const Scratch scratch(data);
+  const ScratchFile scratch(data);
   if (const Outcome sound = check_oni_layout(scratch.get(), data.size(), "file"); !sound)
     check_error(sound.error());
 }
@@ -149,8 +125,7 @@ void fuzz_v4l2(Bytes data) {
 }
 
 void fuzz_lcm_log(Bytes data) {
-  const Scratch scratch(data);
-  std::fflush(scratch.get());
+  const ScratchFile scratch(data);
   const auto source = open_depth_log(scratch.path());
   if (!source) {
     promise(source.error().kind == ErrorKind::bad_input, "a log's error is a bad input");

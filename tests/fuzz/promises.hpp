@@ -15,12 +15,17 @@ inline void promise(bool kept, const char* what) {
   std::abort();
 }
 
+/// What is told is one line that can be read.
+inline void check_line(const std::string& text) {
+  promise(!text.empty() && text.size() < 2000, "a fault is told, shortly");
+  for (const char c : text) promise(c != '\n' && c != '\r' && c != '\0', "in one line");
+}
+
 /// Errors are one printable line that says whose they are.
 inline void check_error(const Error& error) {
   promise(error.kind == ErrorKind::bad_input, "a parser's error is a bad input");
   promise(error.message.rfind("file", 0) == 0, "the error names the file");
-  promise(error.message.size() < 1000, "the error is short");
-  for (const char c : error.message) promise(c != '\n' && c != '\r' && c != '\0', "the error is one line");
+  check_line(error.message);
 }
 
 }  // namespace pliant

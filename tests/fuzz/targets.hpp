@@ -12,6 +12,7 @@ using Bytes = std::span<const std::byte>;
 void fuzz_camera(Bytes data);
 void fuzz_config(Bytes data);
 void fuzz_depth_list(Bytes data);
+void fuzz_export(Bytes data);
 void fuzz_lcm_log(Bytes data);
 void fuzz_message(Bytes data);
 void fuzz_model(Bytes data);
@@ -30,9 +31,10 @@ struct FuzzTarget {
   const char* name;
   void (*run)(Bytes data);
 };
-inline constexpr std::array<FuzzTarget, 15> kFuzzTargets = {{{"camera", fuzz_camera},
+inline constexpr std::array<FuzzTarget, 16> kFuzzTargets = {{{"camera", fuzz_camera},
                                                              {"config", fuzz_config},
                                                              {"depth_list", fuzz_depth_list},
+                                                             {"export", fuzz_export},
                                                              {"lcm_log", fuzz_lcm_log},
                                                              {"message", fuzz_message},
                                                              {"model", fuzz_model},

@@ -10,6 +10,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 git clone -q "$here" "$scratch/another/place"
 cd "$scratch/another/place"
+(cd firmware-app/viewer && npm ci --omit=dev) >"$scratch/log" 2>&1 || { tail -5 "$scratch/log" >&2; exit 1; }
 CCACHE_DISABLE=1 toolchains/packaging/package.sh "$1" "$scratch/packages" >"$scratch/log" 2>&1 || { tail -20 "$scratch/log" >&2; exit 1; }
 failed=0
 for package in "$packages"/*.deb; do

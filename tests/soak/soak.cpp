@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 #include "drivers/model_files/model_builder.hpp"
 #include "drivers/model_files/model_file.hpp"
@@ -137,11 +138,13 @@ int soak(std::int64_t frames) {
 }  // namespace pliant::soak
 
 int main(int count, char** words) {
-  if (count == 2) pliant::soak::play_neighbour(words[1]);
-  const long long frames = count == 2 ? std::atoll(words[1]) : 0;
-  if (frames < 1000) {
+  try {
+    if (count == 2) pliant::soak::play_neighbour(words[1]);
+    const long long frames = count == 2 ? std::atoll(words[1]) : 0;
+    if (frames >= 1000) return pliant::soak::soak(frames);
     std::fputs("usage: soak FRAMES   (1000 at least)\n", stderr);
-    return 2;
+  } catch (const std::exception& fault) {
+    std::fprintf(stderr, "soak: %s\n", fault.what());
   }
-  return pliant::soak::soak(frames);
+  return 2;
 }

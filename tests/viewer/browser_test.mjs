@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
+import dgram from "node:dgram";
 import http from "node:http";
 import { createRequire } from "node:module";
 import net from "node:net";
@@ -260,6 +261,61 @@ test("the server's restart is followed", async () => {
   await until("the notice", async () => (await page.textContent("#notice")).includes("does not answer"));
   viewer = await startViewer();
   await until("going on", async () => (await stateOf(page)) === "tracking" && !(await page.isVisible("#notice")));
+});
+
+/** The body of the first status in a log of LCM: events of sync word, number, time, two lengths, channel, body. */
+function statusIn(log) {
+  for (let at = 0; at < log.length;) {
+    const [channel, body] = [log.readUInt32BE(at + 20), log.readUInt32BE(at + 24)];
+    if (log.toString("latin1", at + 28, at + 28 + channel) === "PLIANT_STATUS")
+      return Buffer.from(log.subarray(at + 28 + channel, at + 28 + channel + body));
+    at += 28 + channel + body;
+  }
+  return assert.fail("no status was published");
+}
+
+/** The same status of an ailing device: stalled, its frames empty; counters from `counts`, in the order of status_t. */
+function ailing(status, counts) {
+  let at = 16;
+  for (let text = 0; text < 2; ++text) at += 4 + status.readUInt32BE(at);
+  at += 16 + 1;
+  status.writeInt8(3, at);  // DEVICE_STALLED
+  status.writeInt8(1, at + 1);  // FAULT_ZERO
+  at += 2 + 4 * 4;
+  const stages = status.readUInt32BE(at);
+  at += 4;
+  for (let stage = 0; stage < stages; ++stage) at += 4 + status.readUInt32BE(at);
+  at += 3 * 4 * stages;
+  counts.forEach((count, i) => status.writeBigInt64BE(BigInt(count), at + 8 * i));
+  return status;
+}
+
+test("what ails the stream is told, and that no depth is published", async () => {
+  await stop(tracker);
+  fs.writeFileSync(path.join(folder, "plain.toml"), "");
+  tracker = startTracker(path.join(folder, "plain.toml"));
+  await until("the note", async () => /No depth picture is published/.test(await page.textContent("#legend")));
+  await stop(tracker);
+  const log = path.join(folder, "status.log");
+  await startProgram("run", "--source", "simulated:box?width=320&height=240&frames=5", "--lcm-url",
+    `file://${log}?mode=w`).ended;
+  const status = ailing(statusIn(fs.readFileSync(log)), [100, 2, 1, 7, 30, 11, 12, 0, 0, 3, 5, 4, 6, 8]);
+  const channel = Buffer.from("PLIANT_STATUS\0");
+  const head = Buffer.from("LC02\0\0\0\0", "latin1");
+  const socket = dgram.createSocket("udp4");
+  await until("the faults", async () => {
+    socket.send(Buffer.concat([head, channel, status]), 7667, "239.255.76.67");
+    return /frames empty/.test(await page.textContent("#numbers"));
+  });
+  const numbers = await page.textContent("#numbers");
+  assert.match(numbers, /devicestalled, frames empty/);
+  assert.match(numbers, /bad frames30: 11 empty, 12 repeated, 3 late, 4 broken/);
+  assert.match(numbers, /frames at too low a rate5/);
+  assert.match(numbers, /stalls \/ opened again6 \/ 8/);
+  await page.screenshot({ path: path.join(pictures, "faults.png") });
+  socket.close();
+  tracker = startTracker();
+  await until("tracking again", async () => (await stateOf(page)) === "tracking" && !(await page.isVisible("#notice")));
 });
 
 /** Resident bytes of a process. */

@@ -1,7 +1,8 @@
 #!/bin/bash
 # toolchains/packaging/package.sh [amd64|arm64|armhf] [OUTPUT]
-# Builds the Debian packages pliant, libpliant-dev and pliant-lcmtypes into OUTPUT (build/packages/ARCH), the same
-# bytes every time from the same sources. Without an architecture, for this machine.
+# Builds the Debian packages pliant, pliant-viewer, libpliant-dev and pliant-lcmtypes into OUTPUT (build/packages/ARCH),
+# the same bytes every time from the same sources. Without an architecture, for this machine. Needs three.js in
+# firmware-app/viewer/node_modules (npm ci there).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export LC_ALL=C.UTF-8 TZ=UTC
@@ -38,6 +39,7 @@ export SOURCE_DATE_EPOCH
   "$(sed -n 's/^project(Pliant VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)" ] ||
   die "toolchains/packaging/debian/changelog and CMakeLists.txt name different versions"
 
+[ -f firmware-app/viewer/node_modules/three/LICENSE ] || die "no three.js for the viewer; npm ci --omit=dev in firmware-app/viewer"
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 options+=(-DCMAKE_INSTALL_PREFIX=/usr "-DCMAKE_INSTALL_LIBDIR=lib/$triplet" "-DPLIANT_DEB_ARCHITECTURE=$arch"
   -DPLIANT_BUILD_BENCHMARKS=OFF)
@@ -47,11 +49,12 @@ configure() {
 }
 configure
 say "building $preset"
-targets=(pliant pliant_lcm_package)
+targets=(pliant pliant-view pliant_lcm_package)
 grep -q '^PLIANT_LCM_JAR:.*=/' "build/$preset/CMakeCache.txt" && targets+=(pliant_lcm_jar)
 cmake --build "build/$preset" -j "$(nproc)" --target "${targets[@]}"
-depends=$(toolchains/packaging/dependencies.sh "build/$preset/firmware-app/pliant" ${sysroot:+"$sysroot"})
-configure "-DPLIANT_DEB_DEPENDS=$depends"
+depends() { toolchains/packaging/dependencies.sh "build/$preset/firmware-app/$1" ${sysroot:+"$sysroot"}; }
+program_depends=$(depends pliant) viewer_depends=$(depends pliant-view)
+configure "-DPLIANT_DEB_DEPENDS=$program_depends" "-DPLIANT_DEB_VIEWER_DEPENDS=$viewer_depends"
 
 say "packing for $arch"
 scratch=$(mktemp -d)

@@ -12,22 +12,15 @@ architectures=("$@")
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
-# first_status LOG START: milliseconds from START (seconds since the epoch) to the first status in an LCM log, which has
-# for every event a magic number, event number, time in microseconds, two lengths, channel, data.
+# first_status LOG START: milliseconds from START (seconds since the epoch) to the first status in an LCM log.
 first_status() {
-  local at=0 size length data time
-  size=$(stat -c %s "$1")
-  while [ "$at" -lt "$size" ]; do
-    read -r time length data < <(od -An -v -tu1 -j"$at" -N28 "$1" | tr -s ' \n' ' ' | awk '
-      { for (i = 13; i <= 20; ++i) time = time * 256 + $i; for (i = 21; i <= 24; ++i) length_ = length_ * 256 + $i
-        for (i = 25; i <= 28; ++i) data = data * 256 + $i; printf "%.0f %d %d\n", time, length_, data }')
-    if [ "$(tail -c +$((at + 29)) "$1" | head -c "$length")" = PLIANT_STATUS ]; then
-      awk -v time="$time" -v start="$2" 'BEGIN { printf "%.0f", time / 1000 - start * 1000 }'
-      return
-    fi
-    at=$((at + 28 + length + data))
-  done
-  die "no status was published"
+  python3 -B - "$1" "$2" <<'END'
+import sys
+sys.path.append("firmware-app/examples")
+import lcm_python
+print(next(round(utime / 1e3 - float(sys.argv[2]) * 1e3) for utime, channel, _ in lcm_python.read_log(sys.argv[1])
+           if channel == "PLIANT_STATUS"))
+END
 }
 
 printf '%-6s %12s %14s %13s  %s\n' "" "program, kB" "installed, kB" "to status, ms" "linked with"

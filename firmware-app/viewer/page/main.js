@@ -12,7 +12,7 @@ try {
   console.error(fault);
 }
 
-let model = null, link = null, connected = false, paused = false, waiting = {}, frameHeard = -1e9;
+let model = null, link = null, connected = false, paused = false, waiting = {}, frameHeard = -1e9, depthHeard = -1e9;
 
 function show(packet) {
   if (packet.kind === "model") {
@@ -32,6 +32,7 @@ const connection = new Connection(
   (packet) => {
     if (packet.kind === "link") link = packet;
     if (packet.kind === "frame") frameHeard = performance.now();
+    if (packet.kind === "depth") depthHeard = performance.now();
     // While paused the newest of each is kept, so that going on shows the present.
     if (packet.kind !== "link") {
       if (paused) waiting[packet.kind] = packet;
@@ -77,7 +78,12 @@ function refresh() {
     }), fault.remote ?? "");
     if (connected && link && !link.fault && performance.now() - frameHeard > 2500 && !paused) panel.silence();
   }
-  if (!paused) panel.tick(performance.now(), link);
+  byId("scene").classList.toggle("old", Boolean(fault) && !paused);
+  if (paused) return;
+  const noDepth = performance.now() - depthHeard > 2500 && !fault;
+  if (noDepth) scene?.forgetDepth();
+  panel.showFrame(model, noDepth && scene?.showDepth ? "No depth picture is published: [lcm] publish_depth = true" : "");
+  panel.tick(performance.now(), link);
 }
 
 function setPaused(state) {

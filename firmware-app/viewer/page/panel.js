@@ -5,6 +5,26 @@ const byId = (id) => document.getElementById(id);
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
 const css = ([red, green, blue]) => `rgb(${red} ${green} ${blue})`;
 
+/** The stream's faults in a user's words; the keys are those of status_t. */
+const FAULTS = { zero: "empty", stuck: "repeated", noise: "noise", wrong_size: "of another size", delayed: "late",
+  broken: "broken", slow: "too few a second" };
+
+/** "5: 4 empty, 1 repeated" */
+function badFrames(status) {
+  const parts = Object.entries(FAULTS).filter(([fault]) => fault !== "slow" && status[`${fault}_frames`] > 0)
+    .map(([fault, word]) => `${status[`${fault}_frames`]} ${word}`);
+  return parts.length > 0 ? `${status.bad_frames}: ${parts.join(", ")}` : String(status.bad_frames);
+}
+
+/** "streaming", "stalled", "streaming, frames empty" */
+function device(status) {
+  const text = document.createElement("span");
+  const fault = FAULTS[status.stream_fault];
+  text.textContent = fault ? `${status.device}, frames ${fault}` : status.device;
+  if (fault || !["streaming", "opening", "ended"].includes(status.device)) text.className = "bad";
+  return text;
+}
+
 function row(name, value, wide) {
   const line = document.createElement("tr");
   if (wide) line.className = "wide";
@@ -48,7 +68,10 @@ export class Panel {
     }
   }
 
-  showFrame(model) {
+  /** `note`: what the picture lacks, empty when nothing. */
+  showFrame(model, note = this.note ?? "") {
+    this.note = note;
+    if (!this.last) return;
     const { last: frame } = this;
     const regions = byId("regions");
     regions.replaceChildren(...frame.regions.map((region) => {
@@ -72,8 +95,10 @@ export class Panel {
     }
     const unseen = document.createElement("div");
     unseen.append(swatch(css(model.palette[0])), `${frame.not_observed} points not seen`);
-    legend.replaceChildren(`${frame.deformed} points deformed, by displacement`, bar, ends, unseen);
-    byId("deformed-now")?.replaceChildren(String(frame.deformed));
+    const lacking = document.createElement("div");
+    lacking.className = "lacking";
+    lacking.textContent = note;
+    legend.replaceChildren(`${frame.deformed} points deformed, by displacement`, bar, ends, unseen, lacking);
   }
 
   setStatus(status, now) {
@@ -84,8 +109,8 @@ export class Panel {
     for (const stage of status.stages) stages[stage.name] = stage.median / 1000;
     this.plots.stages.add(now, stages);
     byId("rate-now").textContent = status.rate.toFixed(1);
-    byId("latency-now").textContent =
-      `${(status.latency_median / 1000).toFixed(1)}, p99 ${(status.latency_p99 / 1000).toFixed(1)}`;
+    byId("latency-now").replaceChildren(`${(status.latency_median / 1000).toFixed(1)} `, swatch(COLOURS[0]), "p99 ",
+      `${(status.latency_p99 / 1000).toFixed(1)} `, swatch(COLOURS[1]));
     byId("stage-key").replaceChildren(...this.plots.stages.names().map((name, index) => {
       const entry = document.createElement("span");
       entry.append(swatch(COLOURS[index % COLOURS.length]), name);
@@ -99,16 +124,21 @@ export class Panel {
     const status = this.status;
     if (status) {
       const rows = [
-        row("device", status.device),
+        row("device", device(status)),
         row("confidence", this.last?.confidence.toFixed(2) ?? "–"),
         row("strain energy", status.strain_energy.toFixed(3)),
         row("tracked / searching / lost", `${status.tracked} / ${status.searching} / ${status.lost}`),
-        row("dropped / bad frames", `${status.dropped} / ${status.bad_frames}`),
-        row("over budget", String(status.deadline_misses)),
+        row("bad frames", badFrames(status)),
+        row("dropped / over budget", `${status.dropped} / ${status.deadline_misses}`),
         row("unsent / refused", `${status.unsent} / ${status.send_failures}`),
         row("memory", megabytes(status.rss_bytes)),
         row("shown here", `${(this.shown(performance.now())).toFixed(0)} frames/s`),
       ];
+      if (status.slow_frames > 0) rows.push(row("frames at too low a rate", String(status.slow_frames)));
+      if (status.stalls + status.reopenings > 0)
+        rows.push(row("stalls / opened again", `${status.stalls} / ${status.reopenings}`));
+      if (status.heap_calls + status.page_faults > 0)
+        rows.push(row("heap calls / page faults", `${status.heap_calls} / ${status.page_faults}`));
       if (link?.incomplete) rows.push(row("incomplete on the way", String(link.incomplete)));
       if (status.last_error) rows.push(row("last error", status.last_error, true));
       byId("numbers").replaceChildren(...rows);

@@ -54,6 +54,7 @@ export class Plot {
     });
     context.fillStyle = "#a4adb5";
     context.font = `${11 * ratio}px system-ui, sans-serif`;
-    context.fillText(String(Number(most.toPrecision(2))), 3 * ratio, 12 * ratio);
+    if (rows.length > 0) context.fillText(String(Number(most.toPrecision(2))), 3 * ratio, 12 * ratio);
+    context.fillText(`${SECONDS} s ago`, 3 * ratio, height - 4 * ratio);
   }
 }

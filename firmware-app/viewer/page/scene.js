@@ -14,14 +14,17 @@ const POINT_VERTEX = `
     gl_Position = projectionMatrix * place;
     gl_PointSize = clamp(size / -place.z, 1.5, 60.0);
   }`;
+// Readings are hidden behind the model's points that lie up to `behind` metres deeper: they measure the same surface.
 const DEPTH_VERTEX = `
   attribute float shade;
-  uniform float size;
+  uniform float size, behind;
   varying vec3 colour;
   void main() {
     vec4 place = modelViewMatrix * vec4(position, 1.0);
     colour = vec3(shade);
     gl_Position = projectionMatrix * place;
+    vec4 pushed = projectionMatrix * vec4(place.xy, place.z - behind, 1.0);
+    gl_Position.z = pushed.z / pushed.w * gl_Position.w;
     gl_PointSize = clamp(size * position.z / -place.z, 1.0, 40.0);
   }`;
 const FRAGMENT = `
@@ -34,13 +37,27 @@ const FRAGMENT = `
 
 function material(vertexShader, discs) {
   return new THREE.ShaderMaterial({ vertexShader, fragmentShader: FRAGMENT,
-    uniforms: { size: { value: 1 }, discs: { value: discs } } });
+    uniforms: { size: { value: 1 }, behind: { value: 0 }, discs: { value: discs } } });
 }
 
 function rotation([w, x, y, z]) {
   return [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
     2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
     2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)];
+}
+
+/** Three bars of length 1 in x, y, z, seen through everything: lines are one pixel wide in most browsers. */
+function makeAxes() {
+  const axes = new THREE.Group();
+  [0xff5050, 0x50d060, 0x60a0ff].forEach((color, k) => {
+    const size = [0, 1, 2].map((i) => (i === k ? 1 : 0.025));
+    const bar = new THREE.Mesh(new THREE.BoxGeometry(...size), new THREE.MeshBasicMaterial({ color, depthTest: false,
+      transparent: true }));
+    bar.position.setComponent(k, 0.5);
+    bar.renderOrder = 2;
+    axes.add(bar);
+  });
+  return axes;
 }
 
 export class Scene {
@@ -129,8 +146,10 @@ export class Scene {
 
   updateSizes() {
     const pixels = this.renderer.domElement.height / (2 * Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2)));
-    this.points.material.uniforms.size.value = pixels * (this.model?.spacing ?? 0.005) * 1.25;
+    this.points.material.uniforms.size.value = pixels * (this.model?.spacing ?? 0.005) * 1.5; // overlapping
     this.depth.material.uniforms.size.value = pixels * (this.cell ?? 0.005) * 1.15;
+    // Half the distance between two points, as far as a disc reaches aslant, and the sensor's noise.
+    this.depth.material.uniforms.behind.value = (this.model?.spacing ?? 0.005) + 0.005;
     this.dirty = true;
   }
 
@@ -194,7 +213,7 @@ export class Scene {
 
   setAxes(regions) {
     while (this.axes.length < regions.length) {
-      this.axes.push(new THREE.AxesHelper(1).setColors(0xff5050, 0x50d060, 0x5090ff));
+      this.axes.push(makeAxes());
       this.root.add(this.axes.at(-1));
     }
     this.axes.forEach((helper, i) => {
@@ -205,8 +224,6 @@ export class Scene {
       helper.quaternion.set(x, y, z, w);
       helper.position.set(...region.trans);
       helper.scale.setScalar(this.radius * (region.id === 0 ? 0.8 : 0.45));
-      helper.material.depthTest = false;
-      helper.renderOrder = 2;
     });
     this.shownRegions = regions;
   }
@@ -221,8 +238,7 @@ export class Scene {
         const z = readings[i] / picture.depth_scale;
         place[3 * count] = (c * step - cx) / fx * z;
         place[3 * count + 1] = (r * step - cy) / fy * z;
-        // A little behind, so that the model's points lie on top.
-        place[3 * count + 2] = z + 0.004;
+        place[3 * count + 2] = z;
         shade[count++] = 0.1 + 0.35 * Math.min(1, Math.max(0, (far - z) / Math.max(far - near, 1e-6)));
       }
     }
@@ -234,6 +250,13 @@ export class Scene {
     this.hasDepth = true;
     this.cell = step / fx;
     this.updateSizes();
+  }
+
+  /** No picture came for long. */
+  forgetDepth() {
+    if (!this.hasDepth) return;
+    this.hasDepth = this.depth.visible = false;
+    this.dirty = true;
   }
 
   applyToggles() {
