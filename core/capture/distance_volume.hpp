@@ -1,0 +1,80 @@
+// A cube of space in which each node knows how far it is from the surface: the truncated signed distance of
+// Curless and Levoy (A volumetric method for building complex models from range images, SIGGRAPH 1996), in
+// integers.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/camera/surface.hpp"
+#include "core/capture/capture_settings.hpp"
+#include "core/memory/workspace.hpp"
+
+namespace pliant {
+
+/// A node of the grid.
+struct Voxel {
+  std::int16_t distance = 0;  ///< 1/256 mm, positive before the surface, within the plan's front and back
+  std::uint16_t weight = 0;   ///< 0: never seen
+};
+
+/// Of a whole number of 1/16 mm.
+inline constexpr std::int32_t kDistanceUnits = 16;
+
+/// What the volume knows of a place.
+enum class Place : std::uint8_t {
+  unknown,  ///< never seen
+  surface,  ///< a surface is near
+  free      ///< the camera saw through it
+};
+
+/// Model frame: origin in the middle of the cube, 1/16 mm. Memory: four bytes a node and two a block.
+class DistanceVolume {
+ public:
+  void lay_out(Workspace& workspace, const VolumePlan& plan) noexcept;
+  /// Forgets everything.
+  void clear() noexcept;
+
+  [[nodiscard]] const VolumePlan& plan() const noexcept { return plan_; }
+  [[nodiscard]] const Voxel& at(int x, int y, int z) const noexcept { return voxels_[index(x, y, z)]; }
+  [[nodiscard]] Voxel* row(int x, int y, int z) noexcept { return &voxels_[index(x, y, z)]; }
+
+  /// Does the cube hold the point, with one voxel to spare on each side?
+  [[nodiscard]] bool holds(const IntPoint& p) const noexcept {
+    const std::int32_t most = plan_.half() - plan_.voxel;
+    return p.x >= -most && p.x <= most && p.y >= -most && p.y <= most && p.z >= -most && p.z <= most;
+  }
+  /// Of the node nearest to a point that the cube holds. `distance` (1/256 mm) is set for Place::surface.
+  [[nodiscard]] Place place(const IntPoint& p, std::int32_t& distance) const noexcept;
+
+  /// Distance (1/256 mm) between the eight nodes around a point that the cube holds, and its gradient as a
+  /// unit vector (Q14). False where one of the nodes was never seen or the surface is too far to be told.
+  [[nodiscard]] bool sample(const IntPoint& p, std::int32_t& distance, IntPoint& gradient) const noexcept;
+
+  /// Blocks hold nodes once a surface came near.
+  [[nodiscard]] bool active(int block) const noexcept {
+    return active_[static_cast<std::size_t>(block)] != 0;
+  }
+  /// Activates the blocks that a surface at `p` (held by the cube) concerns.
+  void activate_around(const IntPoint& p) noexcept;
+  /// The camera saw through all of an inactive block.
+  void saw_through(int block) noexcept {
+    std::uint8_t& seen = free_[static_cast<std::size_t>(block)];
+    if (seen < 255) ++seen;
+  }
+  /// Looks through a block after which it counts as free.
+  static constexpr std::uint8_t kFreeLooks = 4;
+
+ private:
+  [[nodiscard]] std::size_t index(int x, int y, int z) const noexcept {
+    return static_cast<std::size_t>((z * plan_.cells + y) * plan_.cells + x);
+  }
+  void activate(int block) noexcept;
+
+  VolumePlan plan_;
+  std::int64_t per_unit_ = 0;  // nodes per 1/16 mm, Q24
+  std::span<Voxel> voxels_;
+  std::span<std::uint8_t> active_, free_;  // a block each
+};
+
+}  // namespace pliant
