@@ -14,6 +14,7 @@ constexpr std::int32_t kReach = 1 << 15;   // 1/16 mm: farther points are not us
 constexpr double kNormalSpan = 0.02;       // metres that a candidate's normal is taken over
 constexpr std::uint32_t kLeastShare = 25;  // a plane holds at least one of so many lattice points
 constexpr int kRefinements = 3;
+constexpr double kSurelyBackground = 2;  // times the least extent
 
 /// 3 σ and at least 3 mm: real tables are not flat.
 std::int32_t tolerance(std::int32_t sigma) noexcept {
@@ -152,7 +153,14 @@ bool BackgroundPlanes::fit(BackgroundPlane& plane) noexcept {
     plane.offset = rounded(normal.dot(mean));
     plane.points = static_cast<std::uint32_t>(n);
   }
-  return connected_extent(plane) >= least_extent_ * kUnitsPerMetre;
+  const std::int32_t extent = connected_extent(plane);
+  if (extent < least_extent_ * kUnitsPerMetre) return false;
+  if (extent >= kSurelyBackground * least_extent_ * kUnitsPerMetre) return true;
+  // Behind the top of a box or a cushion lies the table; behind the background next to nothing.
+  std::uint32_t behind = 0;
+  for (const LatticePoint& point : lattice_)
+    behind += point.usable && plane.height(point.p) < -2 * tolerance(point.sigma) ? 1U : 0U;
+  return 2 * behind < plane.points;
 }
 
 void BackgroundPlanes::assign(const BackgroundPlane& plane, std::int8_t index) noexcept {

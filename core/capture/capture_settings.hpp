@@ -11,7 +11,7 @@
 namespace pliant {
 
 struct CaptureSettings {
-  double size = 0.40;  ///< edge of the cube that holds the object, metres [0.05, 1.0]
+  double size = 0.50;  ///< edge of the cube that holds the object, metres [0.05, 1.0]
   double voxel = 0;  ///< metres; 0: follows the sensor's noise and `size` (see volume_plan()) [0.0005, 0.02]
   double clearance =
       0;          ///< height above the table below which nothing is taken, metres; 0: from noise [0, 0.2]

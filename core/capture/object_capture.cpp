@@ -305,6 +305,9 @@ JointFit ObjectCapture::finish() noexcept {
   JointFit fit;
   if (!known_pose_)
     fit = joint_.run(keyframes_.all(), projector_, surface_, align_settings().noise, kGate, rows_);
+  // Few views say no more than what was fused already, which holds all pictures.
+  constexpr std::size_t kFewViews = 4;
+  if (keyframes_.all().size() < kFewViews) return fit;
   volume_.clear();
   for (const Keyframe& kept : keyframes_.all())
     integrate(kept.view.picture, projector_, FixedPose(kept.view.pose, Vector3::Zero()),

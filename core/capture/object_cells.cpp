@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int32_t kFarthest = static_cast<std::int32_t>(kFarthestView * kUnitsPerMetre) - 1;
 constexpr std::uint32_t kFewestCells = 120;  // of a target
+constexpr double kFarTooLarge = 2;           // times the volume: no object, but what is left of a wall
 
 constexpr unsigned bit(Cell kind) noexcept {
   return 1U << static_cast<unsigned>(kind);
@@ -78,7 +79,7 @@ Target ObjectCells::find_target(const Surface& surface, const BackgroundPlanes& 
         reading(surface, background, cell, p) ? Cell::fresh : Cell::nothing;
   }
   std::fill(marked_.begin(), marked_.end(), std::uint8_t{0});
-  const auto most = static_cast<std::int32_t>(size * kUnitsPerMetre);
+  const auto most = static_cast<std::int32_t>(kFarTooLarge * size * kUnitsPerMetre);
   const std::int64_t reach = static_cast<std::int64_t>(width_) * width_ / 8;
   Target best;
   std::int64_t best_score = 0;
