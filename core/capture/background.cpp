@@ -16,9 +16,10 @@ constexpr std::uint32_t kLeastShare = 25;  // a plane holds at least one of so m
 constexpr int kRefinements = 3;
 constexpr double kSurelyBackground = 2;  // times the least extent
 
-/// 3 σ and at least 3 mm: real tables are not flat.
+/// 4 σ and at least 6 mm: real tables are not flat, and stereo cameras are noisier over them than over
+/// objects.
 std::int32_t tolerance(std::int32_t sigma) noexcept {
-  return std::max(3 * sigma, 3 * kUnitsPerMillimetre);
+  return std::max(4 * sigma, 6 * kUnitsPerMillimetre);
 }
 
 std::int32_t rounded(double x) noexcept {
@@ -152,6 +153,7 @@ bool BackgroundPlanes::fit(BackgroundPlane& plane) noexcept {
     plane.normal = {rounded(normal.x() * 16384), rounded(normal.y() * 16384), rounded(normal.z() * 16384)};
     plane.offset = rounded(normal.dot(mean));
     plane.points = static_cast<std::uint32_t>(n);
+    plane.spread = rounded(std::sqrt(std::max(0.0, eigen.values[0])));
   }
   const std::int32_t extent = connected_extent(plane);
   if (extent < least_extent_ * kUnitsPerMetre) return false;

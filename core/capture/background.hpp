@@ -15,6 +15,7 @@ struct BackgroundPlane {
   IntPoint normal;           ///< unit, Q14
   std::int32_t offset = 0;   ///< 1/16 mm
   std::uint32_t points = 0;  ///< of the lattice that lie on it
+  std::int32_t spread = 0;   ///< standard deviation of their heights, 1/16 mm
 
   /// How far `p` lies before the plane, 1/16 mm. |p| < 2^15.
   [[nodiscard]] std::int32_t height(const IntPoint& p) const noexcept {
@@ -34,10 +35,13 @@ class BackgroundPlanes {
   void update(const Surface& surface) noexcept;
 
   [[nodiscard]] std::span<const BackgroundPlane> planes() const noexcept { return {planes_.data(), count_}; }
-  /// Does a reading stand out before every plane by at least `margin` (1/16 mm)?
+  /// Does a reading stand out before every plane by at least `margin` (1/16 mm) and 2.5 of the plane's own
+  /// standard deviations?
   [[nodiscard]] bool stands_out(const IntPoint& p, std::int32_t margin) const noexcept {
-    for (std::size_t k = 0; k < count_; ++k)
-      if (planes_[k].height(p) < margin) return false;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const std::int32_t uneven = planes_[k].spread * 5 / 2;
+      if (planes_[k].height(p) < (margin > uneven ? margin : uneven)) return false;
+    }
     return true;
   }
 

@@ -49,13 +49,9 @@ void DistanceVolume::activate_around(const IntPoint& p) noexcept {
 }
 
 Place DistanceVolume::place(const IntPoint& p, std::int32_t& distance) const noexcept {
-  const std::int32_t from = plan_.half() + plan_.voxel / 2;
-  const auto node = [&](std::int32_t x) { return static_cast<int>(((x + from) * per_unit_) >> 24); };
-  const int x = node(p.x), y = node(p.y), z = node(p.z);
-  const int blocks = plan_.blocks();
-  const auto block = static_cast<std::size_t>(((z / kBlock) * blocks + y / kBlock) * blocks + x / kBlock);
+  const std::size_t block = block_of(p);
   if (active_[block] == 0) return free_[block] >= kFreeLooks ? Place::free : Place::unknown;
-  const Voxel& voxel = at(x, y, z);
+  const Voxel& voxel = at(node(p.x), node(p.y), node(p.z));
   if (voxel.weight == 0) return Place::unknown;
   if (voxel.distance >= plan_.front * kDistanceUnits - kDistanceUnits) return Place::free;
   distance = voxel.distance;

@@ -44,6 +44,8 @@ class DistanceVolume {
     const std::int32_t most = plan_.half() - plan_.voxel;
     return p.x >= -most && p.x <= most && p.y >= -most && p.y <= most && p.z >= -most && p.z <= most;
   }
+  /// Did a surface come near a point that the cube holds?
+  [[nodiscard]] bool near_surface(const IntPoint& p) const noexcept { return active_[block_of(p)] != 0; }
   /// Of the node nearest to a point that the cube holds. `distance` (1/256 mm) is set for Place::surface.
   [[nodiscard]] Place place(const IntPoint& p, std::int32_t& distance) const noexcept;
 
@@ -68,6 +70,14 @@ class DistanceVolume {
  private:
   [[nodiscard]] std::size_t index(int x, int y, int z) const noexcept {
     return static_cast<std::size_t>((z * plan_.cells + y) * plan_.cells + x);
+  }
+  [[nodiscard]] int node(std::int32_t x) const noexcept {
+    return static_cast<int>(((x + plan_.half() + plan_.voxel / 2) * per_unit_) >> 24);
+  }
+  [[nodiscard]] std::size_t block_of(const IntPoint& p) const noexcept {
+    const int blocks = plan_.blocks();
+    return static_cast<std::size_t>(((node(p.z) / kBlock) * blocks + node(p.y) / kBlock) * blocks +
+                                    node(p.x) / kBlock);
   }
   void activate(int block) noexcept;
 

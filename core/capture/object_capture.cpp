@@ -221,7 +221,7 @@ bool ObjectCapture::follow() noexcept {
       predicted.rotation = orthonormalised(predicted.rotation);
     }
   }
-  cells_.take_held(surface_, background_, volume_, FixedPose(predicted.inverse(), Vector3::Zero()));
+  cells_.take_near(surface_, background_, volume_, FixedPose(predicted.inverse(), Vector3::Zero()));
   const auto points =
       std::span<const ViewPoint>(points_).first(cells_.sample(surface_, normal_span_, points_));
   ViewAlignSettings align = align_settings();

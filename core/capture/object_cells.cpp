@@ -128,10 +128,44 @@ Target ObjectCells::find_target(const Surface& surface, const BackgroundPlanes& 
   if (best_seed < 0) return best;
   const std::size_t count = flood(surface, best_seed, bit(Cell::fresh), 2);
   for (std::size_t i = 0; i < count; ++i) taken_[static_cast<std::size_t>(queue_[i])] = 1;
+  take_hovering(surface, background, best);
   return best;
 }
 
-void ObjectCells::take_held(const Surface& surface, const BackgroundPlanes& background,
+void ObjectCells::take_hovering(const Surface& surface, const BackgroundPlanes& background,
+                                Target& target) noexcept {
+  constexpr std::int32_t kGap = 30 * kUnitsPerMillimetre, kHovers = 20 * kUnitsPerMillimetre;
+  if (background.planes().empty()) return;
+  const auto apart = [](std::int32_t low_a, std::int32_t high_a, std::int32_t low_b, std::int32_t high_b) {
+    return std::max(low_a, low_b) - std::min(high_a, high_b) > kGap;
+  };
+  for (int seed = 0; seed < width_ * height_; ++seed) {
+    const auto at = static_cast<std::size_t>(seed);
+    if (kind_[at] != Cell::fresh || marked_[at] >= 2) continue;
+    const std::size_t count = flood(surface, seed, bit(Cell::fresh), 3);
+    if (count < kFewestCells / 8) continue;
+    const IntPoint first = surface.vertex(seed % width_ * 2, seed / width_ * 2,
+                                          surface.depth_at(seed % width_ * 2, seed / width_ * 2));
+    IntPoint low = first, high = first;
+    std::int32_t lowest = kFarthest;
+    for (std::size_t i = 0; i < count; ++i) {
+      const int u = queue_[i] % width_ * 2, v = queue_[i] / width_ * 2;
+      const IntPoint p = surface.vertex(u, v, surface.depth_at(u, v));
+      widen(low, high, p);
+      for (const BackgroundPlane& plane : background.planes()) lowest = std::min(lowest, plane.height(p));
+    }
+    if (lowest < kHovers || apart(low.x, high.x, target.lowest.x, target.highest.x) ||
+        apart(low.y, high.y, target.lowest.y, target.highest.y) ||
+        apart(low.z, high.z, target.lowest.z, target.highest.z))
+      continue;
+    for (std::size_t i = 0; i < count; ++i) taken_[static_cast<std::size_t>(queue_[i])] = 1;
+    target.cells += static_cast<std::uint32_t>(count);
+    widen(target.lowest, target.highest, low);
+    widen(target.lowest, target.highest, high);
+  }
+}
+
+void ObjectCells::take_near(const Surface& surface, const BackgroundPlanes& background,
                             const DistanceVolume& volume, const FixedPose& model_from_camera) noexcept {
   for (int cell = 0; cell < width_ * height_; ++cell) {
     IntPoint p;

@@ -57,13 +57,16 @@ class ObjectCells {
   /// Taken cells' readings with their normals, evenly thinned out to at most out.size().
   [[nodiscard]] std::size_t sample(const Surface& surface, std::int32_t normal_span,
                                    std::span<ViewPoint> out) const noexcept;
-  /// Takes every cell before the background whose reading the volume holds: what alignment may look at.
-  void take_held(const Surface& surface, const BackgroundPlanes& background, const DistanceVolume& volume,
+  /// Takes every cell before the background whose reading lies near what was fused: what alignment looks at.
+  void take_near(const Surface& surface, const BackgroundPlanes& background, const DistanceVolume& volume,
                  const FixedPose& model_from_camera) noexcept;
 
  private:
   [[nodiscard]] bool reading(const Surface& surface, const BackgroundPlanes& background, int cell,
                              IntPoint& p) const noexcept;
+  /// Takes what hovers within 3 cm of the target: sensors lose dark or steep pieces between two parts of one
+  /// object, and nothing hovers by itself.
+  void take_hovering(const Surface& surface, const BackgroundPlanes& background, Target& target) noexcept;
   /// Collects in queue_ the cells that hang together with `seed` and are of a kind in `kinds` (a bit each).
   std::size_t flood(const Surface& surface, int seed, unsigned kinds, std::uint8_t mark) noexcept;
   void forbid_with(const Surface& surface, unsigned kinds, std::uint8_t mark,

@@ -7,8 +7,8 @@
 namespace pliant {
 
 struct CapturedMeshSettings {
-  /// Weight (see integrate.hpp) below which a node is not believed: two straight views.
-  int least_weight = 32;
+  /// Weight (see integrate.hpp) below which a node is not believed: half a straight view, or some flat ones.
+  int least_weight = 8;
   /// Parts smaller than this share of the largest are islands and go [0, 1].
   double least_part = 0.1;
   /// Height of the table in the model's frame, metres; what lies lower, and flat remains on it, goes.
