@@ -168,10 +168,11 @@ void ObjectCells::take_hovering(const Surface& surface, const BackgroundPlanes& 
 void ObjectCells::take_near(const Surface& surface, const BackgroundPlanes& background,
                             const DistanceVolume& volume, const FixedPose& model_from_camera) noexcept {
   for (int cell = 0; cell < width_ * height_; ++cell) {
+    taken_[static_cast<std::size_t>(cell)] = 0;
     IntPoint p;
-    const bool held =
-        reading(surface, background, cell, p) && volume.holds(model_from_camera.point(p.x, p.y, p.z));
-    taken_[static_cast<std::size_t>(cell)] = held ? 1 : 0;
+    if (!reading(surface, background, cell, p)) continue;
+    const IntPoint m = model_from_camera.point(p.x, p.y, p.z);
+    taken_[static_cast<std::size_t>(cell)] = volume.holds(m) && volume.near_surface(m) ? 1 : 0;
   }
 }
 
