@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/capture/integrate.hpp"
-
 namespace pliant {
 
 namespace {
@@ -16,6 +14,7 @@ constexpr double kTooFarVoxels = 1.5;         // σ beyond so many voxels says n
 constexpr double kLeastHeld = 0.06;           // below it the sensor's noise turns the view
 constexpr double kLeastReadings = 0.15;       // of the picture
 constexpr double kBelowTable = 0.008;         // metres of the volume below the table
+constexpr int kFreeEvery = 4;                 // pictures
 constexpr std::size_t kTriesToFindAgain = 6;  // kept views
 
 bool usable_size(double size) noexcept {
@@ -29,6 +28,7 @@ void ObjectCapture::lay_out(Workspace& workspace, const Intrinsics& camera, cons
   background_.lay_out(workspace, camera);
   cells_.lay_out(workspace, camera);
   volume_.lay_out(workspace, plan);
+  fuser_.lay_out(workspace, camera);
   keyframes_.lay_out(workspace, camera);
   joint_.lay_out(workspace);
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
@@ -61,6 +61,7 @@ const char* ObjectCapture::start(const Intrinsics& camera, const SensorDescripti
   if (workspace.exhausted()) return "the memory block is too small";
   surface_.start(camera, sensor, settings.kernels);
   projector_.start(camera);
+  fuser_.start(projector_);
   background_.start(surface_, settings.size);
   cells_.start(settings.clearance);
   volume_.clear();
@@ -88,6 +89,7 @@ void ObjectCapture::judge_picture(const DepthFrame& frame) noexcept {
   ++figures_.frames;
   surface_.build(frame, {0, 0, camera_.width, camera_.height});
   background_.update(surface_);
+  cells_.look(surface_, background_);
   const bool placed = begun_ ? follow() : begin();
   if (!placed) {
     status_.state = begun_ ? CaptureState::lost : CaptureState::waiting;
@@ -221,7 +223,7 @@ bool ObjectCapture::follow() noexcept {
       predicted.rotation = orthonormalised(predicted.rotation);
     }
   }
-  cells_.take_near(surface_, background_, volume_, FixedPose(predicted.inverse(), Vector3::Zero()));
+  cells_.take_near(surface_, volume_, FixedPose(predicted.inverse(), Vector3::Zero()));
   const auto points =
       std::span<const ViewPoint>(points_).first(cells_.sample(surface_, normal_span_, points_));
   ViewAlignSettings align = align_settings();
@@ -253,10 +255,10 @@ bool ObjectCapture::follow() noexcept {
 }
 
 void ObjectCapture::fuse(const DepthFrame& frame) noexcept {
-  const FixedPose pose(pose_, Vector3::Zero()), inverse(pose_.inverse(), Vector3::Zero());
+  const FixedPose inverse(pose_.inverse(), Vector3::Zero());
   const std::int32_t gate = std::max(3 * align_settings().noise, 2 * plan_.voxel);
   const bool first = figures_.fused == 0;
-  if (!first) cells_.judge(surface_, background_, volume_, inverse, gate);
+  if (!first) cells_.judge(surface_, volume_, inverse, gate);
   const std::uint32_t object = cells_.count(Cell::known) + cells_.count(Cell::fresh);
   status_.against = !first && cells_.count(Cell::against) * 10 > object;
   status_.distance = pose_.translation.norm();
@@ -275,7 +277,7 @@ void ObjectCapture::fuse(const DepthFrame& frame) noexcept {
   picture_.depth = picture_depth_;
   picture_.facing = picture_facing_;
   take_picture(surface_, cells_.mask(), normal_span_, picture_);
-  integrate(picture_, projector_, pose, inverse, surface_, volume_);
+  fuser_.fuse({picture_, pose_, kFreeEvery}, surface_, volume_);
   ++figures_.fused;
   coverage_.add(pose_);
   if (keyframes_.wanted(pose_)) keep(frame);
@@ -310,8 +312,7 @@ JointFit ObjectCapture::finish() noexcept {
   if (keyframes_.all().size() < kFewViews) return fit;
   volume_.clear();
   for (const Keyframe& kept : keyframes_.all())
-    integrate(kept.view.picture, projector_, FixedPose(kept.view.pose, Vector3::Zero()),
-              FixedPose(kept.view.pose.inverse(), Vector3::Zero()), surface_, volume_);
+    fuser_.fuse({kept.view.picture, kept.view.pose}, surface_, volume_);
   return fit;
 }
 

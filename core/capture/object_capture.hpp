@@ -11,6 +11,7 @@
 #include "core/capture/capture_settings.hpp"
 #include "core/capture/coverage.hpp"
 #include "core/capture/distance_volume.hpp"
+#include "core/capture/integrate.hpp"
 #include "core/capture/joint_alignment.hpp"
 #include "core/capture/keyframes.hpp"
 #include "core/capture/object_cells.hpp"
@@ -94,6 +95,7 @@ class ObjectCapture {
   BackgroundPlanes background_;
   ObjectCells cells_;
   DistanceVolume volume_;
+  ViewFuser fuser_;
   Keyframes keyframes_;
   JointAlignment joint_;
   Coverage coverage_;

@@ -29,6 +29,7 @@ void ObjectCells::lay_out(Workspace& workspace, const Intrinsics& camera) noexce
   const auto cells = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   kind_ = workspace.take<Cell>(cells);
   taken_ = workspace.take<std::uint8_t>(cells);
+  stands_out_ = workspace.take<std::uint8_t>(cells);
   marked_ = workspace.take<std::uint8_t>(cells);
   queue_ = workspace.take<std::int32_t>(cells);
 }
@@ -43,6 +44,12 @@ bool ObjectCells::reading(const Surface& surface, const BackgroundPlanes& backgr
   // 2.5 σ and 2 mm: of the table's own readings fewer than one in a hundred stand out farther.
   const std::int32_t margin = std::max(surface.sigma(p.z) * 5 / 2, 2 * kUnitsPerMillimetre) + clearance_;
   return background.stands_out(p, margin);
+}
+
+void ObjectCells::look(const Surface& surface, const BackgroundPlanes& background) noexcept {
+  IntPoint p;
+  for (int cell = 0; cell < width_ * height_; ++cell)
+    stands_out_[static_cast<std::size_t>(cell)] = reading(surface, background, cell, p) ? 1 : 0;
 }
 
 std::size_t ObjectCells::flood(const Surface& surface, int seed, unsigned kinds, std::uint8_t mark) noexcept {
@@ -73,11 +80,7 @@ std::size_t ObjectCells::flood(const Surface& surface, int seed, unsigned kinds,
 Target ObjectCells::find_target(const Surface& surface, const BackgroundPlanes& background, int u, int v,
                                 bool chosen, double size) noexcept {
   const int cells = width_ * height_;
-  for (int cell = 0; cell < cells; ++cell) {
-    IntPoint p;
-    kind_[static_cast<std::size_t>(cell)] =
-        reading(surface, background, cell, p) ? Cell::fresh : Cell::nothing;
-  }
+  for (std::size_t i = 0; i < kind_.size(); ++i) kind_[i] = stands_out_[i] != 0 ? Cell::fresh : Cell::nothing;
   std::fill(marked_.begin(), marked_.end(), std::uint8_t{0});
   const auto most = static_cast<std::int32_t>(kFarTooLarge * size * kUnitsPerMetre);
   const std::int64_t reach = static_cast<std::int64_t>(width_) * width_ / 8;
@@ -165,12 +168,12 @@ void ObjectCells::take_hovering(const Surface& surface, const BackgroundPlanes& 
   }
 }
 
-void ObjectCells::take_near(const Surface& surface, const BackgroundPlanes& background,
-                            const DistanceVolume& volume, const FixedPose& model_from_camera) noexcept {
+void ObjectCells::take_near(const Surface& surface, const DistanceVolume& volume,
+                            const FixedPose& model_from_camera) noexcept {
   for (int cell = 0; cell < width_ * height_; ++cell) {
     taken_[static_cast<std::size_t>(cell)] = 0;
-    IntPoint p;
-    if (!reading(surface, background, cell, p)) continue;
+    if (stands_out_[static_cast<std::size_t>(cell)] == 0) continue;
+    const IntPoint p = vertex(surface, cell);
     const IntPoint m = model_from_camera.point(p.x, p.y, p.z);
     taken_[static_cast<std::size_t>(cell)] = volume.holds(m) && volume.near_surface(m) ? 1 : 0;
   }
@@ -191,14 +194,13 @@ void ObjectCells::forbid_with(const Surface& surface, unsigned kinds, std::uint8
   }
 }
 
-void ObjectCells::judge(const Surface& surface, const BackgroundPlanes& background,
-                        const DistanceVolume& volume, const FixedPose& model_from_camera,
-                        std::int32_t gate) noexcept {
+void ObjectCells::judge(const Surface& surface, const DistanceVolume& volume,
+                        const FixedPose& model_from_camera, std::int32_t gate) noexcept {
   for (int cell = 0; cell < width_ * height_; ++cell) {
     Cell& kind = kind_[static_cast<std::size_t>(cell)];
     kind = Cell::nothing;
-    IntPoint p;
-    if (!reading(surface, background, cell, p)) continue;
+    if (stands_out_[static_cast<std::size_t>(cell)] == 0) continue;
+    const IntPoint p = vertex(surface, cell);
     const IntPoint m = model_from_camera.point(p.x, p.y, p.z);
     if (!volume.holds(m)) {
       kind = Cell::outside;

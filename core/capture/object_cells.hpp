@@ -36,6 +36,9 @@ class ObjectCells {
     clearance_ = static_cast<std::int32_t>(clearance * kUnitsPerMetre);
   }
 
+  /// Finds what stands before the background in a new picture; the others build on it.
+  void look(const Surface& surface, const BackgroundPlanes& background) noexcept;
+
   /// Finds the connected thing before the background that is nearest to pixel (u, v), with the larger of two
   /// that are equally near, and takes its cells. Things that reach over more than `size` metres are not
   /// considered unless pixel (u, v) was chosen by the user.
@@ -45,8 +48,8 @@ class ObjectCells {
   /// Tells the object from what is beside it by what the volume knows: cells in space that was seen to be
   /// free are against it, and so is new surface that hangs together with more than a quarter of such cells,
   /// or with nothing that is known. `gate`: farthest from the known surface, 1/16 mm.
-  void judge(const Surface& surface, const BackgroundPlanes& background, const DistanceVolume& volume,
-             const FixedPose& model_from_camera, std::int32_t gate) noexcept;
+  void judge(const Surface& surface, const DistanceVolume& volume, const FixedPose& model_from_camera,
+             std::int32_t gate) noexcept;
 
   [[nodiscard]] CellMask mask() const noexcept { return {taken_, width_}; }
   [[nodiscard]] std::uint32_t count(Cell kind) const noexcept {
@@ -58,12 +61,16 @@ class ObjectCells {
   [[nodiscard]] std::size_t sample(const Surface& surface, std::int32_t normal_span,
                                    std::span<ViewPoint> out) const noexcept;
   /// Takes every cell before the background whose reading lies near what was fused: what alignment looks at.
-  void take_near(const Surface& surface, const BackgroundPlanes& background, const DistanceVolume& volume,
+  void take_near(const Surface& surface, const DistanceVolume& volume,
                  const FixedPose& model_from_camera) noexcept;
 
  private:
   [[nodiscard]] bool reading(const Surface& surface, const BackgroundPlanes& background, int cell,
                              IntPoint& p) const noexcept;
+  [[nodiscard]] IntPoint vertex(const Surface& surface, int cell) const noexcept {
+    const int u = cell % width_ * 2, v = cell / width_ * 2;
+    return surface.vertex(u, v, surface.depth_at(u, v));
+  }
   /// Takes what hovers within 3 cm of the target: sensors lose dark or steep pieces between two parts of one
   /// object, and nothing hovers by itself.
   void take_hovering(const Surface& surface, const BackgroundPlanes& background, Target& target) noexcept;
@@ -76,6 +83,7 @@ class ObjectCells {
   std::int32_t clearance_ = 0;
   std::span<Cell> kind_;
   std::span<std::uint8_t> taken_, marked_;
+  std::span<std::uint8_t> stands_out_;  // of this picture
   std::span<std::int32_t> queue_;
   std::uint32_t counts_[5] = {0, 0, 0, 0, 0};
 };
