@@ -58,6 +58,18 @@ Place DistanceVolume::place(const IntPoint& p, std::int32_t& distance) const noe
   return Place::surface;
 }
 
+bool DistanceVolume::stands_in_free_space(const IntPoint& p,
+                                          const FixedPose& model_from_camera) const noexcept {
+  const std::int32_t deeper = 3 * plan_.voxel;
+  if (p.z <= 0) return false;
+  const IntPoint m =
+      model_from_camera.point(p.x + p.x * deeper / p.z, p.y + p.y * deeper / p.z, p.z + deeper);
+  std::int32_t distance = 0;
+  if (!holds(m)) return false;
+  const Place there = place(m, distance);
+  return there == Place::free || (there == Place::surface && distance > 2 * plan_.voxel * kDistanceUnits);
+}
+
 bool DistanceVolume::sample(const IntPoint& p, std::int32_t& distance, IntPoint& gradient) const noexcept {
   const std::int32_t half = plan_.half();
   // Node coordinates in Q8.

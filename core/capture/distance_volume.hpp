@@ -9,6 +9,7 @@
 #include "core/camera/surface.hpp"
 #include "core/capture/capture_settings.hpp"
 #include "core/memory/workspace.hpp"
+#include "core/track/model_tables.hpp"
 
 namespace pliant {
 
@@ -49,6 +50,12 @@ class DistanceVolume {
   /// Of the node nearest to a point that the cube holds. `distance` (1/256 mm) is set for Place::surface.
   [[nodiscard]] Place place(const IntPoint& p, std::int32_t& distance) const noexcept;
 
+  /// Does a reading at `p` (camera frame) stand where the camera saw through before? Asked three voxels
+  /// behind it: of the object itself that is inside, where no view ever looked, while its skin may have been
+  /// grazed.
+  [[nodiscard]] bool stands_in_free_space(const IntPoint& p,
+                                          const FixedPose& model_from_camera) const noexcept;
+
   /// Distance (1/256 mm) between the eight nodes around a point that the cube holds, and its gradient as a
   /// unit vector (Q14). False where one of the nodes was never seen or the surface is too far to be told.
   [[nodiscard]] bool sample(const IntPoint& p, std::int32_t& distance, IntPoint& gradient) const noexcept;
@@ -59,6 +66,14 @@ class DistanceVolume {
   }
   /// Activates the blocks that a surface at `p` (held by the cube) concerns.
   void activate_around(const IntPoint& p) noexcept;
+  /// Views fused into an active block are counted up to kOften.
+  void count_fusion(int block) noexcept {
+    std::uint8_t& count = active_[static_cast<std::size_t>(block)];
+    if (count < kOften) ++count;
+  }
+  [[nodiscard]] bool fused_often(int block) const noexcept {
+    return active_[static_cast<std::size_t>(block)] >= kOften;
+  }
   /// The camera saw through all of an inactive block.
   void saw_through(int block) noexcept {
     std::uint8_t& seen = free_[static_cast<std::size_t>(block)];
@@ -66,6 +81,7 @@ class DistanceVolume {
   }
   /// Looks through a block after which it counts as free.
   static constexpr std::uint8_t kFreeLooks = 4;
+  static constexpr std::uint8_t kOften = 9;
 
  private:
   [[nodiscard]] std::size_t index(int x, int y, int z) const noexcept {
@@ -84,7 +100,8 @@ class DistanceVolume {
   VolumePlan plan_;
   std::int64_t per_unit_ = 0;  // nodes per 1/16 mm, Q24
   std::span<Voxel> voxels_;
-  std::span<std::uint8_t> active_, free_;  // a block each
+  std::span<std::uint8_t> active_;  // a block each: 0 inactive, else one more than its fusions
+  std::span<std::uint8_t> free_;    // a block each: looks through it
 };
 
 }  // namespace pliant

@@ -153,7 +153,8 @@ void ViewFuser::fuse(const ViewToFuse& view, const Surface& rays, DistanceVolume
         if (!volume.active(block)) {
           int u = 0, v = 0;
           if (!projector_->project(centre, u, v) || !view.picture.window.contains(u, v)) continue;
-          if (2 * view.picture.depth[view.picture.index(u, v)] - centre.z > radius + plan.front)
+          if (2 * view.picture.depth[view.picture.index(u, v)] - centre.z > radius + plan.front &&
+              look(view.picture, centre, radius, plan) == Sight::free)
             volume.saw_through(block);
           continue;
         }
@@ -161,8 +162,12 @@ void ViewFuser::fuse(const ViewToFuse& view, const Surface& rays, DistanceVolume
         if (sight == Sight::skip) continue;
         walk.free_weight = 1;
         if (sight == Sight::free) {
-          if (((block + views_) & (view.free_every - 1)) != 0) continue;
-          walk.free_weight = view.free_every;
+          constexpr int kFreeEvery = 4;
+          if (view.one_of_many && (block + views_) % kFreeEvery != 0) continue;
+          if (view.one_of_many) walk.free_weight = kFreeEvery;
+        } else {
+          if (view.one_of_many && volume.fused_often(block) && (block + views_) % 2 != 0) continue;
+          volume.count_fusion(block);
         }
         for (int dz = 0; dz < kBlock; ++dz)
           for (int dy = 0; dy < kBlock; ++dy) {

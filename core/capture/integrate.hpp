@@ -15,9 +15,9 @@ namespace pliant {
 struct ViewToFuse {
   const ViewPicture& picture;
   const RigidTransform& pose;  ///< camera <- model, within 2 m
-  /// Blocks that the whole view sees through are updated in one of so many views, with as many times the
-  /// weight: a power of two; 1 where each view comes only once.
-  int free_every = 1;
+  /// One of many views, as a camera brings them: blocks that it sees through are updated in one of four such
+  /// views with four times the weight, and blocks that were fused often in one of two.
+  bool one_of_many = false;
 };
 
 /// Each node of the active blocks takes the distance of the reading on its line of sight, measured along that

@@ -14,7 +14,6 @@ constexpr double kTooFarVoxels = 1.5;         // σ beyond so many voxels says n
 constexpr double kLeastHeld = 0.06;           // below it the sensor's noise turns the view
 constexpr double kLeastReadings = 0.15;       // of the picture
 constexpr double kBelowTable = 0.008;         // metres of the volume below the table
-constexpr int kFreeEvery = 4;                 // pictures
 constexpr std::size_t kTriesToFindAgain = 6;  // kept views
 
 bool usable_size(double size) noexcept {
@@ -277,7 +276,7 @@ void ObjectCapture::fuse(const DepthFrame& frame) noexcept {
   picture_.depth = picture_depth_;
   picture_.facing = picture_facing_;
   take_picture(surface_, cells_.mask(), normal_span_, picture_);
-  fuser_.fuse({picture_, pose_, kFreeEvery}, surface_, volume_);
+  fuser_.fuse({picture_, pose_, true}, surface_, volume_);
   ++figures_.fused;
   coverage_.add(pose_);
   if (keyframes_.wanted(pose_)) keep(frame);

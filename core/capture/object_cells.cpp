@@ -207,17 +207,10 @@ void ObjectCells::judge(const Surface& surface, const DistanceVolume& volume,
       continue;
     }
     std::int32_t distance = 0;
-    switch (volume.place(m, distance)) {
-      case Place::unknown:
-        kind = Cell::fresh;
-        break;
-      case Place::free:
-        kind = Cell::against;
-        break;
-      case Place::surface:
-        kind = std::abs(distance) <= gate * kDistanceUnits ? Cell::known : Cell::against;
-        break;
-    }
+    if (volume.place(m, distance) == Place::surface && std::abs(distance) <= gate * kDistanceUnits)
+      kind = Cell::known;
+    else
+      kind = volume.stands_in_free_space(p, model_from_camera) ? Cell::against : Cell::fresh;
   }
   std::fill(marked_.begin(), marked_.end(), std::uint8_t{0});
   forbid_with(surface, bit(Cell::fresh) | bit(Cell::against), 1, [](const std::uint32_t(&of)[5]) {

@@ -38,7 +38,7 @@ struct Counts {
     std::int32_t distance = 0;
     IntPoint gradient;
     if (!volume.sample(m, distance, gradient)) {
-      ++(volume.place(m, distance) == Place::free ? counts.against : counts.fresh);
+      ++(volume.stands_in_free_space({p.x, p.y, p.z}, model_from_camera) ? counts.against : counts.fresh);
       continue;
     }
     if (dot_q14(gradient, model_from_camera.direction(p.nx, p.ny, p.nz)) < kCos60) {
