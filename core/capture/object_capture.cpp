@@ -7,11 +7,11 @@ namespace pliant {
 
 namespace {
 
-constexpr double kNormalSpan = 0.006;    // metres to each side that normals are taken over
-constexpr double kLeastAgreement = 0.5;  // of the readings that can be judged
+constexpr double kNormalSpan = 0.006;       // metres to each side that normals are taken over
+constexpr double kLeastAgreement = 0.75;    // of the readings that can be judged
+constexpr double kCertainAgreement = 0.92;  // when the object is found again
 constexpr std::uint32_t kFewestAgreeing = 120;
 constexpr double kTooFarVoxels = 1.5;         // σ beyond so many voxels says nothing of the surface
-constexpr double kLeastHeld = 0.06;           // below it the sensor's noise turns the view
 constexpr double kLeastReadings = 0.15;       // of the picture
 constexpr double kBelowTable = 0.008;         // metres of the volume below the table
 constexpr std::size_t kTriesToFindAgain = 6;  // kept views
@@ -99,18 +99,22 @@ void ObjectCapture::judge_picture(const DepthFrame& frame) noexcept {
 }
 
 RigidTransform ObjectCapture::first_pose(const Target& target) noexcept {
-  // Upright: the normal of the plane that the target stands on, the nearest below it.
+  // Upright: the normal of the plane that the target stands on. Of the planes not far below it that is the
+  // one most upright in the picture; where none is (the camera looks straight down), the nearest.
   Vector3 up(0, -1, 0);
   const BackgroundPlane* table = nullptr;
-  std::int32_t lowest = 30 * kUnitsPerMillimetre;
+  constexpr std::int32_t kUprightEnough = 16384 / 6;
+  const std::size_t sampled = cells_.sample(surface_, normal_span_, points_);
+  std::int32_t nearest = plan_.half(), uprightness = kUprightEnough;
   for (const BackgroundPlane& plane : background_.planes()) {
-    if (plane.normal.y > 0) continue;  // hangs over the scene
     std::int32_t least = 1 << 20;
-    const std::size_t count = cells_.sample(surface_, normal_span_, points_);
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < sampled; ++i)
       least = std::min(least, plane.height({points_[i].x, points_[i].y, points_[i].z}));
-    if (least >= lowest) continue;
-    lowest = least;
+    if (least > plan_.half()) continue;
+    const bool upright = -plane.normal.y > uprightness;
+    if (!upright && (uprightness > kUprightEnough || least >= nearest)) continue;
+    if (upright) uprightness = -plane.normal.y;
+    nearest = least;
     table = &plane;
   }
   if (table != nullptr) up = Vector3(table->normal.x, table->normal.y, table->normal.z) / 16384.0;
@@ -120,8 +124,7 @@ RigidTransform ObjectCapture::first_pose(const Target& target) noexcept {
   const Vector3 away = up.cross(right);
   // The bounding box along these axes.
   Vector3 low(1e9, 1e9, 1e9), high(-1e9, -1e9, -1e9);
-  const std::size_t count = cells_.sample(surface_, normal_span_, points_);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < sampled; ++i) {
     const Vector3 p = Vector3(points_[i].x, points_[i].y, points_[i].z) / kUnitsPerMetre;
     const Vector3 q(right.dot(p), away.dot(p), up.dot(p));
     low = low.cwiseMin(q);
@@ -187,7 +190,7 @@ ViewAlignSettings ObjectCapture::align_settings() const noexcept {
 
 bool ObjectCapture::good(const ViewFit& fit) noexcept {
   return fit.agreeing >= kFewestAgreeing && fit.agreement() >= kLeastAgreement &&
-         fit.agreeing * 4 >= fit.fresh;
+         fit.agreeing * 2 >= fit.fresh;
 }
 
 bool ObjectCapture::find_again(std::span<const ViewPoint> points, ViewFit& fit) noexcept {
@@ -201,7 +204,10 @@ bool ObjectCapture::find_again(std::span<const ViewPoint> points, ViewFit& fit) 
     if (!align_to_picture(points, view.view, projector_, surface_, kReach, align_settings(), rows_, pose))
       continue;
     const ViewFit tried = align_to_volume(points, volume_, pose, align_settings(), rows_);
-    if (good(tried) && tried.agreement() * tried.agreeing > best.agreement() * best.agreeing) best = tried;
+    // A thing looks like itself from other sides, too: found again is what fits nearly everywhere.
+    const bool certain =
+        good(tried) && tried.agreement() >= kCertainAgreement && tried.agreeing >= 3 * tried.fresh;
+    if (certain && tried.agreement() * tried.agreeing > best.agreement() * best.agreeing) best = tried;
   }
   if (best.agreeing == 0) return false;
   fit = best;
@@ -238,7 +244,7 @@ bool ObjectCapture::follow() noexcept {
   status_.agreement = fit.agreement();
   status_.rms = fit.rms;
   status_.held = fit.held;
-  status_.featureless = fit.held < kLeastHeld;
+  status_.featureless = fit.held < fit.needed;
   figures_.featureless += status_.featureless ? 1 : 0;
   before_ = pose_;
   before_frame_ = pose_frame_;

@@ -124,7 +124,12 @@ ViewFit align_to_volume(std::span<const ViewPoint> points, const DistanceVolume&
     const bool last =
         i == settings.iterations || !step(robust, predicted, settings, inverse, x) || is_still(x);
     if (!last) continue;
-    if (counts.rows > 0) fit.held = held_share(robust.moments, radius_of(used, robust.centre));
+    if (counts.rows > 0) {
+      const double radius = radius_of(used, robust.centre);
+      fit.held = held_share(robust.moments, radius);
+      // As characterisability has it: the slip moves the surface along its normal by half of the noise.
+      fit.needed = std::clamp(0.5 * settings.noise / kUnitsPerMetre / (0.1 * radius), 0.04, 0.3);
+    }
     break;
   }
   fit.pose = inverse.inverse();

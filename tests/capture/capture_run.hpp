@@ -1,7 +1,10 @@
 // Captures a simulated object and compares the captured surface with the true one.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -25,7 +28,7 @@ struct CaptureScore {
   double seam = 0;   ///< largest step of the error between neighbours, but for the largest thousandth
   double drift = 0;  ///< farthest that a tracked pose lay off the truth, at the object's middle
   std::int64_t fused = 0, frames = 0;
-  std::size_t keyframes = 0;
+  std::size_t views = 0;  ///< kept
   JointFit joint;
 };
 
@@ -76,14 +79,13 @@ class CaptureRun {
       if (score.fused++ == 0) true_from_captured = true_pose.inverse() * status.pose;
       const RigidTransform off = true_pose.inverse() * status.pose * true_from_captured.inverse();
       score.drift = std::max(score.drift, off.translation.norm());
-      last_off = off;
     }
     score.frames = capture.figures().frames;
   }
 
   void finish(const CapturedMeshSettings& given = {}) {
     score.joint = capture.finish();
-    score.keyframes = capture.keyframes().all().size();
+    score.views = capture.keyframes().all().size();
     CapturedMeshSettings cleaning = given;
     cleaning.table_height = capture.table_height();
     captured = captured_mesh(capture.volume(), cleaning);
@@ -93,7 +95,7 @@ class CaptureRun {
   void compare() {
     std::vector<Vector3> points;
     for (const Point3f& p : captured.vertices) points.push_back(true_from_captured * to_vector(p));
-    const OrientedCloud surface = sample_surface(true_mesh, 400000);
+    const OrientedCloud surface = sample_surface(true_mesh, 200000);
     const NearestPoints tree(surface.points);
     settle(points, surface, tree);
     std::vector<double> errors, signed_errors;
@@ -104,7 +106,7 @@ class CaptureRun {
     }
     score.median = quantile(errors, 0.5);
     score.p95 = quantile(errors, 0.95);
-    steps(points, signed_errors);
+    steps(signed_errors);
     if (points.empty()) return;
     const NearestPoints captured_tree(points);
     std::size_t all = 0, found = 0;
@@ -122,7 +124,7 @@ class CaptureRun {
   CaptureScore score;
   Geometry captured;
   Mesh true_mesh;
-  RigidTransform true_from_captured, last_off;
+  RigidTransform true_from_captured;
   std::vector<std::uint8_t>
       shown;  ///< of the true mesh's vertices: seen from within 70° in three frames and more
 
@@ -145,11 +147,11 @@ class CaptureRun {
   /// The captured frame is the first view's, whose own noise is no error of the shape: a rigid fit to the
   /// truth.
   void settle(std::vector<Vector3>& points, const OrientedCloud& surface, const NearestPoints& tree) {
-    for (int round = 0; round < 12 && points.size() > 100; ++round) {
+    for (int round = 0; round < 6 && points.size() > 100; ++round) {
       NormalEquations6 equations;
       Vector3 middle = Vector3::Zero();
       for (const Vector3& p : points) middle += p / static_cast<double>(points.size());
-      for (std::size_t k = 0; k < points.size(); k += 3) {
+      for (std::size_t k = 0; k < points.size(); k += 7) {
         const Vector3& p = points[k];
         double square = 0;
         const std::uint32_t i = tree.nearest(p, square);
@@ -169,9 +171,8 @@ class CaptureRun {
       true_from_captured = step * true_from_captured;
     }
   }
-  void steps(const std::vector<Vector3>& points, const std::vector<double>& errors) {
+  void steps(const std::vector<double>& errors) {
     std::vector<double> all;
-    static_cast<void>(points);
     for (const auto& t : captured.triangles)
       for (std::size_t k = 0; k < 3; ++k) all.push_back(std::fabs(errors[t[k]] - errors[t[(k + 1) % 3]]));
     score.seam = quantile(all, 0.999);
