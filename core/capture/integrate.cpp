@@ -6,8 +6,9 @@ namespace pliant {
 
 namespace {
 
-constexpr int kMarkStep = 4;   // pixels; less than a block at any distance
-constexpr int kTileShift = 3;  // a tile's edge is 2^3 pixels
+constexpr int kMarkStep = 4;                    // pixels; less than a block at any distance
+constexpr int kFreeEvery = 4, kOftenEvery = 3;  // see ViewToFuse::one_of_many
+constexpr int kTileShift = 3;                   // a tile's edge is 2^3 pixels
 
 /// Activates the blocks around the picture's readings of the object.
 void activate_blocks(const ViewPicture& picture, const FixedPose& model_from_camera, const Surface& rays,
@@ -162,11 +163,10 @@ void ViewFuser::fuse(const ViewToFuse& view, const Surface& rays, DistanceVolume
         if (sight == Sight::skip) continue;
         walk.free_weight = 1;
         if (sight == Sight::free) {
-          constexpr int kFreeEvery = 4;
           if (view.one_of_many && (block + views_) % kFreeEvery != 0) continue;
           if (view.one_of_many) walk.free_weight = kFreeEvery;
         } else {
-          if (view.one_of_many && volume.fused_often(block) && (block + views_) % 2 != 0) continue;
+          if (view.one_of_many && volume.fused_often(block) && (block + views_) % kOftenEvery != 0) continue;
           volume.count_fusion(block);
         }
         for (int dz = 0; dz < kBlock; ++dz)

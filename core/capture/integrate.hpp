@@ -16,7 +16,7 @@ struct ViewToFuse {
   const ViewPicture& picture;
   const RigidTransform& pose;  ///< camera <- model, within 2 m
   /// One of many views, as a camera brings them: blocks that it sees through are updated in one of four such
-  /// views with four times the weight, and blocks that were fused often in one of two.
+  /// views with four times the weight, and blocks that were fused often in one of three.
   bool one_of_many = false;
 };
 

@@ -1,7 +1,6 @@
 #include "core/capture/view_alignment.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -84,8 +83,19 @@ double held_share(const PlaneMoments& moments, double radius) noexcept {
   Matrix6 a = plane_equations(moments).a / (static_cast<double>(moments.weight) / 256.0);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) a(i, j) /= (i < 3 ? radius : 1.0) * (j < 3 ? radius : 1.0);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(a, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
+  // Inverse iteration: converges to the least eigenvalue, or into the space of several that are as small.
+  constexpr int kRounds = 16;
+  a += 1e-6 * Matrix6::Identity();
+  const auto solver = a.ldlt();
+  Vector6 v;
+  v << 1, 0.8, -0.6, 0.7, -0.9, 0.5;
+  double least = 1;
+  for (int i = 0; i < kRounds; ++i) {
+    const Vector6 next = solver.solve(v / v.norm());
+    least = 1 / next.norm();
+    v = next;
+  }
+  return std::sqrt(least);
 }
 
 double radius_of(std::span<const PlaneRow> rows, const IntPoint& centre) noexcept {

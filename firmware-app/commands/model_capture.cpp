@@ -8,6 +8,7 @@
 #include "core/capture/object_capture.hpp"
 #include "drivers/model_files/captured_mesh.hpp"
 #include "drivers/model_files/describe_model.hpp"
+#include "drivers/recording/pose_list.hpp"
 #include "firmware-app/commands/capture_guide.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
@@ -20,10 +21,11 @@ namespace pliant {
 namespace {
 
 struct CaptureOptions {
-  std::string source, output, ply, sensor;
+  std::string source, output, ply, sensor, poses;
   std::vector<int> at;
   std::int64_t frames = -1;
   CaptureSettings capture;
+  std::vector<StampedPose> known;  ///< what --poses names
 };
 
 constexpr double megabytes(std::size_t bytes) {
@@ -34,7 +36,7 @@ constexpr double megabytes(std::size_t bytes) {
 struct Taken {
   SourceEvent last = SourceEvent::end;
   std::string fault;
-  std::int64_t bad_frames = 0;
+  std::int64_t bad_frames = 0;  ///< and those without a known pose, where poses were given
 };
 
 Taken take_pictures(DepthSource& source, const CaptureOptions& options, ObjectCapture& capture) {
@@ -54,7 +56,16 @@ Taken take_pictures(DepthSource& source, const CaptureOptions& options, ObjectCa
       ++taken.bad_frames;
       continue;
     }
-    guide.take(capture.process(item.frame), capture.coverage());
+    const StampedPose* const known =
+        options.known.empty() ? nullptr
+                              : pose_at(options.known, static_cast<double>(item.frame.utime) * 1e-6);
+    if (!options.known.empty() && known == nullptr) {
+      ++taken.bad_frames;
+      continue;
+    }
+    guide.take(
+        known != nullptr ? capture.process(item.frame, known->transform()) : capture.process(item.frame),
+        capture.coverage());
     if (const std::string advice = guide.advice(); !advice.empty()) {
       line.clear();
       print_warning(advice);
@@ -121,6 +132,12 @@ int capture(const CaptureOptions& given) {
     options.capture.at_u = options.at[0];
     options.capture.at_v = options.at[1];
   }
+  if (!options.poses.empty()) {
+    Result<std::vector<StampedPose>> poses = read_pose_list(options.poses);
+    if (!poses) return report(poses.error());
+    options.known = std::move(*poses);
+    if (options.known.empty()) return report({ErrorKind::bad_input, options.poses + ": holds no pose"});
+  }
   SourceOptions source_options;
   if (!options.sensor.empty()) {
     const Result<SensorFile> sensor = read_sensor(options.sensor);
@@ -152,8 +169,10 @@ int capture(const CaptureOptions& given) {
   if (object.figures().fused == 0) {
     if (taken.last == SourceEvent::lost) return report({ErrorKind::device, taken.fault});
     if (object.figures().frames == 0)
-      return report({ErrorKind::bad_input,
-                     taken.fault.empty() ? "the source has no frame" : "no frame is usable: " + taken.fault});
+      return report({ErrorKind::bad_input, !options.known.empty() && taken.bad_frames > 0
+                                               ? options.poses + ": no pose has the time of a frame"
+                                           : taken.fault.empty() ? "the source has no frame"
+                                                                 : "no frame is usable: " + taken.fault});
     print_warning("nothing was captured: in no picture did an object stand before the background");
     return kExitNotFound;
   }
@@ -195,6 +214,11 @@ void add_model_capture(CLI::App& model, Work& work) {
       ->type_name("P.ply");
   app->add_option("--sensor", options->sensor,
                   "Sensor description (TOML): mode, camera and noise of a device")
+      ->type_name("FILE");
+  app->add_option("--poses", options->poses,
+                  "Known poses of the object, camera <- object, as lines '<seconds> tx ty tz qx qy qz qw' "
+                  "with the frames' "
+                  "stamps; left out: found by alignment")
       ->type_name("FILE");
   app->add_option("--frames", options->frames, "Take this many frames from the source")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))

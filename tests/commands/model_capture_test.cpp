@@ -89,6 +89,24 @@ TEST_F(CaptureCommand, AnInterruptKeepsWhatIsThere) {
   EXPECT_EQ(run_pliant({"model", "info", at("box.model")}).code, 0);
 }
 
+TEST_F(CaptureCommand, TakesKnownPoses) {
+  const std::string folder = at("recording");
+  ASSERT_EQ(run_pliant({"record", "--source", "simulated:box?motion=circled&frames=20&width=320&height=240",
+                        "-o", folder})
+                .code,
+            0);
+  std::vector<std::string> command = words("recording:" + folder, at("known.model"));
+  command.insert(command.end(), {"--poses", folder + "/groundtruth.txt"});
+  const Ended captured = run_pliant(command);
+  EXPECT_EQ(captured.code, 0) << captured.err;
+  EXPECT_NE(captured.out.find("fused: 20 of 20 pictures"), std::string::npos) << captured.out;
+  command.back() = at("other.txt");
+  write_file(command.back(), "999.5 0 0 1 0 0 0 1\n");
+  expect_refused(run_pliant(command), 2, {"other.txt", "no pose has the time"});
+  write_file(command.back(), "1 2 3\n");
+  expect_refused(run_pliant(command), 2, {"other.txt:1"});
+}
+
 TEST_F(CaptureCommand, BadWordsAreRefused) {
   std::vector<std::string> command = words(kTurned, at("m"));
   command.insert(command.end(), {"--at", "700", "10"});
