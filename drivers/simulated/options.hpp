@@ -22,9 +22,9 @@ struct Options {
   std::uint32_t seed = 1;           ///< of the noise
   bool noise = true;                ///< noise=structure (the default) or noise=none
   std::int64_t frames = 300;        ///< [1, 10000000]
-  Motion motion = Motion::handled;  ///< motion=handled (the default), turned or circled
   int width = 640;                  ///< pixels [160, 1280]
   int height = 480;                 ///< pixels [120, 960]
+  Motion motion = Motion::handled;  ///< motion=handled (the default), turned or circled
 };
 
 /// Parses "cushion|figure|box[?key=value[&key=value…]]", with or without "simulated:" before it.
