@@ -20,6 +20,16 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
   return step;
 }
 
+/// What turns `pose` into `target`, about `centre` (in the frame that they lead to).
+[[nodiscard]] inline Vector6 motion_between(const RigidTransform& target, const RigidTransform& pose,
+                                            const Vector3& centre) noexcept {
+  const RigidTransform step = target * pose.inverse();
+  Vector6 x;
+  x.head<3>() = small_vector_from_rotation(step.rotation);
+  x.tail<3>() = step * centre - centre;
+  return x;
+}
+
 /// Rotation vector that turns b into a, exact to second order: half of the skew part of a·bᵀ.
 [[nodiscard]] inline Vector3 turn_between(const Matrix3& a, const Matrix3& b) noexcept {
   Vector3 turn = Vector3::Zero();

@@ -6,35 +6,12 @@
 #include <cstdlib>
 
 #include "core/geometry/vector6.hpp"
+#include "core/track/plane_equations.hpp"
+#include "core/track/residual_spread.hpp"
 
 namespace pliant {
 
 namespace {
-
-constexpr int kBins = 512;  // of |residual|, 1/16 mm each
-
-/// Counts, centres and the histogram of |residual| of one region.
-struct Spread {
-  std::uint32_t count = 0;
-  std::int64_t x = 0, y = 0, z = 0;
-  std::array<std::uint32_t, kBins> bins{};
-
-  void add(const Correspondence& c) noexcept {
-    ++count;
-    x += c.point.x;
-    y += c.point.y;
-    z += c.point.z;
-    ++bins[static_cast<std::size_t>(std::min(std::abs(c.residual) >> 4, kBins - 1))];
-  }
-  [[nodiscard]] std::int32_t median() const noexcept {
-    std::uint32_t below = 0;
-    for (int i = 0; i < kBins; ++i) {
-      below += bins[static_cast<std::size_t>(i)];
-      if (2 * below >= count) return i + 1;
-    }
-    return kBins;
-  }
-};
 
 /// The weighted rows of region `k` about `centre`: the integer kernel of the step, on its own so that it can
 /// be looked at.
@@ -45,32 +22,9 @@ struct Spread {
     if (c.region != k) continue;
     const std::int32_t w = tukey_weight(c.residual, limit);
     if (w == 0) continue;
-    const std::int32_t px = c.point.x - centre.x, py = c.point.y - centre.y, pz = c.point.z - centre.z;
-    moments.add({(py * c.nz - pz * c.ny) >> 14, (pz * c.nx - px * c.nz) >> 14, (px * c.ny - py * c.nx) >> 14,
-                 c.nx, c.ny, c.nz},
-                c.residual, w);
+    add_plane_row(moments, c.point, {c.nx, c.ny, c.nz}, c.residual, w, centre);
   }
   return moments;
-}
-
-Matrix6 symmetric(const PlaneMoments& m, const Vector6& scale) noexcept {
-  Matrix6 a;
-  std::size_t k = 0;
-  for (int row = 0; row < 6; ++row)
-    for (int column = row; column < 6; ++column) {
-      a(row, column) = static_cast<double>(m.a[k++]) * scale[row] * scale[column];
-      a(column, row) = a(row, column);
-    }
-  return a;
-}
-
-/// What turns `pose` into `target`, about `centre`: rotation vector and translation.
-Vector6 difference(const RigidTransform& target, const RigidTransform& pose, const Vector3& centre) noexcept {
-  const RigidTransform step = target * pose.inverse();
-  Vector6 x;
-  x.head<3>() = small_vector_from_rotation(step.rotation);
-  x.tail<3>() = step * centre - centre;
-  return x;
 }
 
 /// A spring of `noise` squared over the joint's give squared.
@@ -93,16 +47,14 @@ void add_joint(const Joint& joint, const RigidTransform& pose, const Vector3& ce
 void align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
            const PointState& points, RegionSet& regions) noexcept {
   const auto all = points.correspondences.first(points.correspondence_count);
-  std::array<Spread, limits::kMaxRegions> spreads{};
-  for (const Correspondence& c : all) spreads[static_cast<std::size_t>(c.region)].add(c);
+  std::array<ResidualSpread, limits::kMaxRegions> spreads{};
+  for (const Correspondence& c : all) spreads[static_cast<std::size_t>(c.region)].add(c.point, c.residual);
 
   for (std::size_t k = 0; k < regions.size(); ++k) {
     TrackedRegion& region = regions[k];
-    const Spread& spread = spreads[k];
+    const ResidualSpread& spread = spreads[k];
     if (!region.alive || spread.count < kFewestCorrespondences) continue;
-    const IntPoint centre{static_cast<std::int32_t>(spread.x / spread.count),
-                          static_cast<std::int32_t>(spread.y / spread.count),
-                          static_cast<std::int32_t>(spread.z / spread.count)};
+    const IntPoint centre = spread.centre();
     // 1.4826 · median is σ of a normal distribution; Tukey's constant is 4.685
     const std::int32_t noise = surface.sigma(centre.z);
     region.scale = std::max((spread.median() * 95) >> 6, noise / 2);
@@ -114,17 +66,13 @@ void align(const Surface& surface, const AlignSettings& settings, const Joints& 
     const PlaneMoments moments = region_moments(all, static_cast<std::int8_t>(k), centre, limit);
     if (moments.rows < kFewestCorrespondences) continue;
 
-    Vector6 unit;
-    unit << 1 / kUnitsPerMetre, 1 / kUnitsPerMetre, 1 / kUnitsPerMetre, 1 / 16384.0, 1 / 16384.0, 1 / 16384.0;
-    constexpr double kWeight = 1 / 256.0, kResidual = 1 / 256000.0;
-    Matrix6 a = symmetric(moments, unit) * kWeight;
-    Vector6 b;
-    for (int i = 0; i < 6; ++i)
-      b[i] = static_cast<double>(moments.b[static_cast<std::size_t>(i)]) * unit[i] * kWeight * kResidual;
+    PlaneEquations equations = plane_equations(moments);
+    Matrix6& a = equations.a;
+    Vector6& b = equations.b;
     const double spread_metres = region.scale / kUnitsPerMetre;
     const Vector3 centre_metres =
         Vector3(centre.x / kUnitsPerMetre, centre.y / kUnitsPerMetre, centre.z / kUnitsPerMetre);
-    const Vector6 back = difference(region.predicted, region.pose, centre_metres);
+    const Vector6 back = motion_between(region.predicted, region.pose, centre_metres);
     for (int i = 0; i < 6; ++i) {
       const double sigma = i < 3 ? settings.prior_rotation : settings.prior_translation;
       const double information = spread_metres * spread_metres / (sigma * sigma);
@@ -136,8 +84,8 @@ void align(const Surface& surface, const AlignSettings& settings, const Joints& 
     if (!(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
     region.pose = motion_about(x, centre_metres) * region.pose;
     region.pose.rotation = orthonormalised(region.pose.rotation);
-    region.rms =
-        std::sqrt(static_cast<double>(moments.square) / static_cast<double>(moments.weight)) * kResidual;
+    region.rms = std::sqrt(static_cast<double>(moments.square) / static_cast<double>(moments.weight)) *
+                 kResidualMetres;
   }
 }
 

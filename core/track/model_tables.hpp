@@ -67,6 +67,14 @@ class Projector {
     v = (p.y * fy_ / p.z + cy_) >> 3;
     return u >= 0 && u < width_ && v >= 0 && v < height_;
   }
+  /// Where the point falls in 1/256 pixel, rounded as project() rounds, inside the picture or not. False
+  /// nearer than 50 mm or beyond 8 m.
+  [[nodiscard]] bool project_finely(const IntPoint& p, std::int32_t& u, std::int32_t& v) const noexcept {
+    if (p.z < 50 * kUnitsPerMillimetre || p.z > kFarthest) return false;
+    u = static_cast<std::int32_t>((static_cast<std::int64_t>(p.x) * fx_ * 32) / p.z) + cx_ * 32;
+    v = static_cast<std::int32_t>((static_cast<std::int64_t>(p.y) * fy_ * 32) / p.z) + cy_ * 32;
+    return true;
+  }
   /// Pixels that `length` (1/16 mm) spans at depth z (1/16 mm), rounded up.
   [[nodiscard]] int pixels(std::int32_t length, std::int32_t z) const noexcept {
     return static_cast<int>(static_cast<std::int64_t>(length) * fx_ / (8 * static_cast<std::int64_t>(z)) + 1);

@@ -167,4 +167,8 @@ bool orient_mesh(Mesh& mesh, std::vector<std::string>& warnings) {
   return adjacency.closed;
 }
 
+bool is_closed(const Mesh& mesh) {
+  return find_neighbours(mesh).closed;
+}
+
 }  // namespace pliant

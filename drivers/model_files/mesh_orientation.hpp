@@ -13,4 +13,7 @@ namespace pliant {
 /// file, else as the file winds most of it. Returns whether the surface is closed (no border anywhere).
 bool orient_mesh(Mesh& mesh, std::vector<std::string>& warnings);
 
+/// No border anywhere.
+[[nodiscard]] bool is_closed(const Mesh& mesh);
+
 }  // namespace pliant

@@ -100,8 +100,9 @@ void fill_normals(OrientedCloud& cloud) {
 }
 
 /// The model's points, in farthest-point order.
-OrientedCloud points_of_mesh(Mesh& mesh, double spacing, BuiltModel& built) {
-  built.closed_surface = orient_mesh(mesh, built.warnings);
+OrientedCloud points_of_mesh(Mesh& mesh, const ModelBuildSettings& settings, BuiltModel& built) {
+  const double spacing = settings.spacing;
+  built.closed_surface = settings.wound_outward ? is_closed(mesh) : orient_mesh(mesh, built.warnings);
   const double area = surface_area(mesh);
   const double coarse = spacing > 0 ? spacing : even_spacing(area, kLeastEvenPoints);
   const bool enough = mesh.vertices.size() >= (spacing > 0 ? kLeastPoints : kLeastVertices);
@@ -234,7 +235,7 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
     return refuse(fmt::format("holds {} different points; a cloud needs {} or more to be a model",
                               mesh.vertices.size(), kLeastPoints));
   const OrientedCloud cloud = mesh.triangles.empty() ? points_of_cloud(mesh, settings.spacing, built)
-                                                     : points_of_mesh(mesh, settings.spacing, built);
+                                                     : points_of_mesh(mesh, settings, built);
   if (cloud.points.size() < kLeastPoints)
     return refuse(fmt::format("a spacing of {} m leaves {} points of it; {} or more are needed",
                               settings.spacing, cloud.points.size(), kLeastPoints));
@@ -258,7 +259,8 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   header.ambiguity = static_cast<std::uint32_t>(shape.ambiguity);
   built.characterisable = shape.ambiguity == ModelHeader::Ambiguity::none;
   header.flags = (built.characterisable ? static_cast<std::uint32_t>(ModelHeader::kCharacterisable) : 0U) |
-                 (built.closed_surface ? static_cast<std::uint32_t>(ModelHeader::kClosedSurface) : 0U);
+                 (built.closed_surface ? static_cast<std::uint32_t>(ModelHeader::kClosedSurface) : 0U) |
+                 (settings.front_only ? static_cast<std::uint32_t>(ModelHeader::kFrontOnly) : 0U);
 
   const std::vector<std::uint16_t> neighbours = neighbour_graph(cloud, header.spacing);
   const std::size_t keypoint_count = std::min(cloud.points.size(), limits::kMaxModelKeypoints);

@@ -14,6 +14,8 @@ namespace pliant {
 struct ModelBuildSettings {
   double metres_per_unit = 1;  ///< of the input's coordinates [1e-6, 1e3]
   double spacing = 0;          ///< wished distance between points, metres; 0: derived from the surface (0, 1]
+  bool wound_outward = false;  ///< the input's triangles are known to be: their winding is not looked into
+  bool front_only = false;     ///< the back is unknown, and the model says so
 };
 
 /// How the points of a model came about.

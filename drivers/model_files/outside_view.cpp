@@ -12,26 +12,6 @@ namespace {
 constexpr int kTrianglePixels = 192;  // edge of the picture
 constexpr int kMostPointPixels = 256;
 
-/// The corners and the middles of the edges of an icosahedron: evenly spread.
-std::vector<Vector3> view_directions() {
-  const double g = 0.5 * (1 + std::sqrt(5.0));
-  std::vector<Vector3> corners;
-  for (const double a : {-1.0, 1.0})
-    for (const double b : {-g, g}) {
-      corners.emplace_back(0, a, b);
-      corners.emplace_back(a, b, 0);
-      corners.emplace_back(b, 0, a);
-    }
-  std::vector<Vector3> directions;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    directions.push_back(corners[i].normalized());
-    for (std::size_t j = i + 1; j < corners.size(); ++j)
-      if ((corners[i] - corners[j]).squaredNorm() < 4.5)
-        directions.push_back((corners[i] + corners[j]).normalized());
-  }
-  return directions;
-}
-
 /// A picture taken along -towards from far away (no perspective).
 class View {
  public:
@@ -120,6 +100,25 @@ Ball ball_around(std::span<const Vector3> points) {
 
 }  // namespace
 
+std::vector<Vector3> view_directions() {
+  const double g = 0.5 * (1 + std::sqrt(5.0));
+  std::vector<Vector3> corners;
+  for (const double a : {-1.0, 1.0})
+    for (const double b : {-g, g}) {
+      corners.emplace_back(0, a, b);
+      corners.emplace_back(a, b, 0);
+      corners.emplace_back(b, 0, a);
+    }
+  std::vector<Vector3> directions;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    directions.push_back(corners[i].normalized());
+    for (std::size_t j = i + 1; j < corners.size(); ++j)
+      if ((corners[i] - corners[j]).squaredNorm() < 4.5)
+        directions.push_back((corners[i] + corners[j]).normalized());
+  }
+  return directions;
+}
+
 std::vector<SideVotes> see_triangles(const Mesh& mesh) {
   std::vector<SideVotes> votes(mesh.triangles.size());
   const Ball ball = ball_around(mesh.vertices);
@@ -154,6 +153,15 @@ std::vector<SideVotes> see_points(const OrientedCloud& cloud, double spacing) {
     view.count(votes, [&](std::uint32_t i) { return cloud.normals[i].dot(towards); });
   }
   return votes;
+}
+
+double outside_share(const OrientedCloud& cloud, double spacing) {
+  SideVotes all;
+  for (const SideVotes& votes : see_points(cloud, spacing)) {
+    all.front += votes.front;
+    all.back += votes.back;
+  }
+  return all.front + all.back > 0 ? all.front / (all.front + all.back) : 0;
 }
 
 }  // namespace pliant

@@ -8,6 +8,9 @@
 
 namespace pliant {
 
+/// The corners and the middles of the edges of an icosahedron: 42 unit directions, evenly spread.
+[[nodiscard]] std::vector<Vector3> view_directions();
+
 /// How often a side of something was seen, counted in pixels over all views.
 struct SideVotes {
   double front = 0;  ///< the side that the winding or normal points to
@@ -20,5 +23,9 @@ struct SideVotes {
 
 /// The same for points, drawn as discs that close the gaps between points `spacing` (metres) apart.
 [[nodiscard]] std::vector<SideVotes> see_points(const OrientedCloud& cloud, double spacing);
+
+/// Of what can be seen from all around of a shape, the share that is its outside: 1 for a closed one, about a
+/// half for one whose back is missing. `spacing` as above.
+[[nodiscard]] double outside_share(const OrientedCloud& cloud, double spacing);
 
 }  // namespace pliant

@@ -13,8 +13,9 @@ namespace pliant::simulated {
 namespace {
 
 constexpr std::array<std::string_view, 3> kObjects{"cushion", "figure", "box"};
-constexpr std::array<std::string_view, 5> kKeys{"seed", "noise", "frames", "width", "height"};
+constexpr std::array<std::string_view, 6> kKeys{"seed", "noise", "frames", "width", "height", "motion"};
 constexpr std::array<std::string_view, 2> kNoises{"structure", "none"};
+constexpr std::array<std::string_view, 3> kMotions{"handled", "turned", "circled"};
 constexpr std::size_t kShown = 60;  ///< characters of a wrong word that an error repeats
 
 Error bad(std::string what) {
@@ -43,6 +44,12 @@ Outcome set(std::string_view key, std::string_view value, Options& options) {
   if (key == "frames") return read<std::int64_t>(key, value, 1, 10000000, options.frames);
   if (key == "width") return read<int>(key, value, 160, 1280, options.width);
   if (key == "height") return read<int>(key, value, 120, 960, options.height);
+  if (key == "motion") {
+    const auto* const motion = std::find(kMotions.begin(), kMotions.end(), value);
+    if (motion == kMotions.end()) return unknown("motion", value, kMotions);
+    options.motion = static_cast<Motion>(motion - kMotions.begin());
+    return success();
+  }
   if (key != "noise") return unknown("key", key, kKeys);
   if (std::find(kNoises.begin(), kNoises.end(), value) == kNoises.end())
     return unknown("noise", value, kNoises);

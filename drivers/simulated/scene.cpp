@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "drivers/simulated/implicit.hpp"
@@ -54,30 +55,42 @@ RigidTransform camera_from_table(const View& view) {
   pose.rotation << 1, 0, 0,  //
       0, -s, -c,             //
       0, c, -s;
+  if (view.azimuth != 0) pose.rotation = pose.rotation * rotation_about(Vector3::UnitZ(), -view.azimuth);
   pose.translation = Vector3(0, 0, view.distance) - pose.rotation * Vector3(0, 0, view.height);
   return pose;
 }
 
-void draw_surroundings(const RigidTransform& pose, DisparityImage& image) {
+Surroundings::Surroundings() {
+  std::size_t most = 0;
+  const auto add = [&](Solid solid, const Vector3& low, const Vector3& high) {
+    Geometry mesh = mesh_of(solid, low, high, 0.008);
+    Thing thing;
+    for (const Point3f& p : mesh.vertices)
+      thing.vertices.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y),
+                                  static_cast<double>(p.z));
+    thing.triangles = std::move(mesh.triangles);
+    most = std::max(most, thing.vertices.size());
+    things_.push_back(std::move(thing));
+  };
+  add(&bottle, {-0.40, 0.18, -0.04}, {-0.28, 0.30, 0.26});
+  add(&carton, {0.16, 0.28, -0.03}, {0.44, 0.52, 0.15});
+  add(&ball, {-0.49, -0.13, -0.02}, {-0.35, 0.01, 0.11});
+  add(&mug, {0.38, 0.14, -0.03}, {0.53, 0.26, 0.12});
+  placed_.reserve(most);
+}
+
+void Surroundings::draw(const RigidTransform& pose, DisparityImage& image) {
   const auto draw_plane = [&](const Vector3& normal, double offset, auto* covers) {
     const Vector3 in_camera = pose.rotation * normal;
     image.draw_plane(in_camera, offset + in_camera.dot(pose.translation), covers, &pose);
   };
   draw_plane(Vector3::UnitZ(), 0, &on_table);
   draw_plane(Vector3::UnitY(), kPanel, &on_panel);
-
-  const auto draw_solid = [&](Solid solid, const Vector3& low, const Vector3& high) {
-    const Geometry mesh = mesh_of(solid, low, high, 0.008);
-    std::vector<Vector3> vertices;
-    for (const Point3f& p : mesh.vertices)
-      vertices.push_back(
-          pose * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)));
-    image.draw(vertices, mesh.triangles, {});
-  };
-  draw_solid(&bottle, {-0.40, 0.18, -0.04}, {-0.28, 0.30, 0.26});
-  draw_solid(&carton, {0.16, 0.28, -0.03}, {0.44, 0.52, 0.15});
-  draw_solid(&ball, {-0.49, -0.13, -0.02}, {-0.35, 0.01, 0.11});
-  draw_solid(&mug, {0.38, 0.14, -0.03}, {0.53, 0.26, 0.12});
+  for (const Thing& thing : things_) {
+    placed_.clear();
+    for (const Vector3& p : thing.vertices) placed_.push_back(pose * p);
+    image.draw(placed_, thing.triangles, {});
+  }
 }
 
 }  // namespace pliant::simulated

@@ -6,6 +6,7 @@
 
 #include "drivers/simulated/actor.hpp"
 #include "drivers/simulated/disparity_image.hpp"
+#include "drivers/simulated/motion.hpp"
 #include "drivers/simulated/options.hpp"
 #include "drivers/simulated/scene.hpp"
 #include "drivers/simulated/structure_sensor.hpp"
@@ -67,11 +68,12 @@ class Simulated final : public SimulatedSource {
         actor_(std::move(stage.actor)),
         camera_(camera_for(options)),
         description_(sensor_for(options)),
+        view_(stage.view),
         camera_from_table_(camera_from_table(stage.view)),
-        surroundings_(camera_),
+        background_(camera_),
         image_(camera_),
         sensor_(camera_, description_, options.seed) {
-    draw_surroundings(camera_from_table_, surroundings_);
+    surroundings_.draw(camera_from_table_, background_);
     const std::size_t count = actor_->mesh().vertices.size();
     vertices_.resize(count);
     float_vertices_.resize(count);
@@ -95,7 +97,8 @@ class Simulated final : public SimulatedSource {
     item.fault.clear();
     item.event = SourceEvent::end;
     if (closed_ || number_ >= options_.frames) return;
-    draw(phase_of(number_));
+    stage();
+    draw();
     tell_truth();
     if (options_.noise)
       sensor_.measure(image_, number_, depth_);
@@ -107,12 +110,36 @@ class Simulated final : public SimulatedSource {
   }
 
  private:
-  void draw(double phase) {
-    actor_->move(phase, state_, vertices_);
+  /// Puts object, hand and camera where they are in this frame.
+  void stage() {
+    const bool handled = options_.motion == Motion::handled;
+    actor_->move(handled ? phase_of(number_) : 0, state_, vertices_);
+    if (handled) return;
+    // Once round, and a twelfth more, so that the first view comes back.
+    const double turned = 13.0 / 12 *
+                          glide(static_cast<double>(number_), 0,
+                                static_cast<double>(std::max<std::int64_t>(1, options_.frames - 1)));
+    if (options_.motion == Motion::turned) {
+      Vector3 axis = state_.parts[0].translation;
+      axis.z() = 0;
+      const RigidTransform turn = hinge(axis, Vector3::UnitZ(), turned);
+      for (Vector3& p : vertices_) p = turn * p;
+      for (RigidTransform& part : state_.parts) part = turn * part;
+    } else {
+      View view = view_;
+      view.azimuth = turned;
+      view.pitch = 36 + 17 * sine(3 * turned);
+      view.distance = view_.distance * (0.92 + 0.08 * sine(2 * turned));
+      camera_from_table_ = camera_from_table(view);
+      background_.clear();
+      surroundings_.draw(camera_from_table_, background_);
+    }
+  }
+  void draw() {
     for (Vector3& p : vertices_) p = camera_from_table_ * p;
     const RigidTransform hand = camera_from_table_ * state_.hand;
     for (std::size_t i = 0; i < hand_.size(); ++i) hand_[i] = hand * hand_rest_[i];
-    image_.copy_from(surroundings_);
+    image_.copy_from(background_);
     std::fill(visible_.begin(), visible_.end(), std::uint8_t{0});
     image_.draw(vertices_, actor_->mesh().triangles, visible_);  // those that face the camera, for now
     image_.draw(hand_, actor_->hand().triangles, {});
@@ -140,8 +167,10 @@ class Simulated final : public SimulatedSource {
   std::unique_ptr<Actor> actor_;
   Intrinsics camera_;
   SensorDescription description_;
+  View view_;
   RigidTransform camera_from_table_;
-  DisparityImage surroundings_;  ///< all that stands still
+  Surroundings surroundings_;
+  DisparityImage background_;  ///< the surroundings as the camera sees them
   DisparityImage image_;
   StructureSensor sensor_;
   ActorState state_;

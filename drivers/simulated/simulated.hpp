@@ -33,8 +33,9 @@ class SimulatedSource : public DepthSource {
   [[nodiscard]] virtual const SimulatedTruth& truth() const = 0;
 };
 
-/// Opens "cushion|figure|box[?seed=1&noise=structure|none&frames=300&width=640&height=480]", with or without
-/// "simulated:" before it. ErrorKind::bad_input names what is unknown or out of range.
+/// Opens "cushion|figure|box[?key=value&…]", with or without "simulated:" before it; the keys are those of
+/// options.hpp: seed, noise=structure|none, frames, width, height, motion=handled|turned|circled.
+/// ErrorKind::bad_input names what is unknown or out of range.
 [[nodiscard]] Result<std::unique_ptr<SimulatedSource>> open_simulated(std::string_view options);
 
 }  // namespace pliant

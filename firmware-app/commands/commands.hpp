@@ -14,6 +14,7 @@ void add_model_commands(CLI::App& program, Work& work);
 void add_model_build(CLI::App& model, Work& work);
 void add_model_info(CLI::App& model, Work& work);
 void add_model_export(CLI::App& model, Work& work);
+void add_model_capture(CLI::App& model, Work& work);
 void add_run(CLI::App& program, Work& work);
 void add_register(CLI::App& program, Work& work);
 void add_record(CLI::App& program, Work& work);

@@ -8,6 +8,7 @@
 #include "drivers/model_files/model_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/expected_detection.hpp"
 #include "firmware-app/commands/memory_plan.hpp"
 
 namespace pliant {
@@ -18,6 +19,17 @@ int info(const std::string& path) {
   const Result<ModelFile> file = ModelFile::open(path);
   if (!file) return report(file.error());
   std::string text = describe_model(file->view());
+  LiveLine line;
+  line.show("looking for the model in simulated pictures of it");
+  const ExpectedDetection expected = expect_detection(file->view());
+  line.clear();
+  text += fmt::format("coverage: {:.0f} % of what can be seen from around\n", 100 * expected.coverage);
+  text +=
+      expected.views > 0
+          ? fmt::format(
+                "expected detection: {} of {} simulated views, {:.1f} m away, from where its outside shows\n",
+                expected.found, expected.views, expected.distance)
+          : std::string("expected detection: none, it shows its outside to no side\n");
   text += "memory to track it, MB:\n";
   for (const auto& [width, height] : {std::pair{320, 240}, std::pair{640, 480}}) {
     const Intrinsics camera{width, height, width * 0.9, width * 0.9, width * 0.5, height * 0.5, 1000};

@@ -19,6 +19,8 @@ TEST_F(ModelCommand, BuildsFromTheSimulatedObject) {
   const Ended info = run_pliant({"model", "info", at("c.model")});
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_NE(info.out.find("640x480"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("coverage: 100 %"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("expected detection: "), std::string::npos) << info.out;
   EXPECT_NE(info.out.find("workspace"), std::string::npos);
 }
 

@@ -39,6 +39,9 @@ TEST(SimulatedOptions, EveryKeyIsRead) {
   EXPECT_EQ(options->height, 240);
   EXPECT_TRUE(parse_options("figure?noise=structure"));
   EXPECT_TRUE(parse_options("figure?"));
+  EXPECT_EQ(parse_options("box")->motion, Motion::handled);
+  EXPECT_EQ(parse_options("box?motion=turned")->motion, Motion::turned);
+  EXPECT_EQ(parse_options("box?motion=circled")->motion, Motion::circled);
 }
 
 TEST(SimulatedOptions, WhatIsUnknownIsNamedWithItsNeighbour) {
@@ -46,6 +49,8 @@ TEST(SimulatedOptions, WhatIsUnknownIsNamedWithItsNeighbour) {
             "simulated: unknown object 'cushon'; nearest known is 'cushion' of cushion, figure, box");
   EXPECT_NE(fault("").find("unknown object ''"), std::string::npos);
   EXPECT_NE(fault("box?sed=3").find("unknown key 'sed'; nearest known is 'seed'"), std::string::npos);
+  EXPECT_NE(fault("box?motion=turn").find("unknown motion 'turn'; nearest known is 'turned'"),
+            std::string::npos);
   EXPECT_NE(fault("box?noise=structured").find("nearest known is 'structure'"), std::string::npos);
   EXPECT_NE(fault(std::string(100000, 'x')), "read");
 }

@@ -1,0 +1,119 @@
+// Captures an object: one camera, one depth picture after the other, fused into a volume from which its
+// surface is taken.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/camera/depth_frame.hpp"
+#include "core/camera/surface.hpp"
+#include "core/capture/background.hpp"
+#include "core/capture/capture_settings.hpp"
+#include "core/capture/coverage.hpp"
+#include "core/capture/distance_volume.hpp"
+#include "core/capture/integrate.hpp"
+#include "core/capture/joint_alignment.hpp"
+#include "core/capture/keyframes.hpp"
+#include "core/capture/object_cells.hpp"
+
+namespace pliant {
+
+enum class CaptureState : std::uint8_t {
+  waiting,    ///< nothing stands before the background yet
+  capturing,  ///< the picture was fused
+  lost        ///< the view could not be aligned: nothing was fused
+};
+
+/// What is said of one picture.
+struct CaptureStatus {
+  CaptureState state = CaptureState::waiting;
+  std::int64_t frame = 0;    ///< its number
+  bool too_near = false;     ///< most of the picture has no reading
+  bool too_far = false;      ///< noise exceeds a voxel where the object is
+  bool too_fast = false;     ///< the object moved farther than alignment reaches, or nearly
+  bool too_large = false;    ///< the object reaches out of the volume
+  bool featureless = false;  ///< its shape does not hold the view: a ball, a plate
+  bool against = false;      ///< something that moves against the object is left out
+  double distance = 0;       ///< of the object, metres; 0 while waiting
+  double agreement = 0;      ///< share of the judged readings that fit [0, 1]
+  double rms = 0;            ///< of their distances from the fused surface, metres
+  double held = 0;           ///< see ViewFit::held
+  RigidTransform pose;       ///< camera <- model, while capturing
+};
+
+/// All that happened so far.
+struct CaptureFigures {
+  std::int64_t frames = 0, fused = 0, lost = 0, featureless = 0;
+};
+
+/// Memory is the block given to start(); no heap call afterwards. Model frame: origin in the middle of the
+/// cube, z along the table's normal (without a table: against the picture's v), y away from the first view.
+class ObjectCapture {
+ public:
+  [[nodiscard]] static std::size_t workspace_bytes(const Intrinsics& camera, const SensorDescription& sensor,
+                                                   const CaptureSettings& settings) noexcept;
+  /// Null when well, else what is wrong in words. The block (aligned to Workspace::kAlignment) must outlive
+  /// this object.
+  [[nodiscard]] const char* start(const Intrinsics& camera, const SensorDescription& sensor,
+                                  const CaptureSettings& settings, std::span<std::byte> block) noexcept;
+
+  /// Takes a picture in.
+  [[nodiscard]] const CaptureStatus& process(const DepthFrame& frame) noexcept;
+  /// The same for a view whose pose (camera <- world) is known; the first picture's pose ties the world to
+  /// the model.
+  [[nodiscard]] const CaptureStatus& process(const DepthFrame& frame,
+                                             const RigidTransform& camera_from_world) noexcept;
+
+  /// Aligns the kept views to each other and fuses the volume from them anew. Takes as long as some hundred
+  /// pictures.
+  JointFit finish() noexcept;
+
+  [[nodiscard]] const DistanceVolume& volume() const noexcept { return volume_; }
+  [[nodiscard]] const Coverage& coverage() const noexcept { return coverage_; }
+  [[nodiscard]] const CaptureFigures& figures() const noexcept { return figures_; }
+  [[nodiscard]] const Keyframes& keyframes() const noexcept { return keyframes_; }
+  /// Height of the table in the model's frame, metres; lower than the cube without a table.
+  [[nodiscard]] double table_height() const noexcept { return table_height_; }
+
+ private:
+  void lay_out(Workspace& workspace, const Intrinsics& camera, const VolumePlan& plan) noexcept;
+  [[nodiscard]] bool begin() noexcept;
+  [[nodiscard]] bool follow() noexcept;
+  [[nodiscard]] bool find_again(std::span<const ViewPoint> points, ViewFit& fit) noexcept;
+  void fuse(const DepthFrame& frame) noexcept;
+  void keep(const DepthFrame& frame) noexcept;
+  void judge_picture(const DepthFrame& frame) noexcept;
+  [[nodiscard]] RigidTransform first_pose(const Target& target) noexcept;
+  [[nodiscard]] ViewAlignSettings align_settings() const noexcept;
+  [[nodiscard]] static bool good(const ViewFit& fit) noexcept;
+
+  Intrinsics camera_;
+  CaptureSettings settings_;
+  VolumePlan plan_;
+  Surface surface_;
+  Projector projector_;
+  BackgroundPlanes background_;
+  ObjectCells cells_;
+  DistanceVolume volume_;
+  ViewFuser fuser_;
+  Keyframes keyframes_;
+  JointAlignment joint_;
+  Coverage coverage_;
+  ViewPicture picture_;
+  std::span<std::uint16_t> picture_depth_;
+  std::span<std::uint8_t> picture_facing_;
+  std::span<ViewPoint> points_;
+  std::span<PlaneRow> rows_;
+  std::int32_t normal_span_ = 0;
+
+  bool begun_ = false;
+  bool known_pose_ = false;       // of the picture in hand
+  RigidTransform given_, world_;  // camera <- world of it; world <- model
+  RigidTransform pose_, before_;  // camera <- model of the last two fused pictures
+  std::int64_t pose_frame_ = 0, before_frame_ = 0;
+  double table_height_ = 0;
+  CaptureStatus status_;
+  CaptureFigures figures_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,57 @@
+// What the person who shows the object is told.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/capture/object_capture.hpp"
+
+namespace pliant {
+
+/// Names of the sides that were not seen: "the back, the back left". Empty when all were.
+[[nodiscard]] std::string sides_missing(const Coverage& coverage);
+
+/// Turns the pictures' statuses into a line that is renewed and advice that is given when it changes.
+class CaptureGuide {
+ public:
+  explicit CaptureGuide(double rate) : rate_(rate > 1 ? rate : 30) {}
+
+  /// Takes a picture's status in.
+  void take(const CaptureStatus& status, const Coverage& coverage);
+  /// How far it is: renewed with every picture.
+  [[nodiscard]] std::string line() const;
+  /// Advice that should be read now; empty for most pictures. No sooner than two seconds after the same
+  /// advice was given, and only after a quarter of a second of good reason.
+  [[nodiscard]] std::string advice();
+  /// Everything from the first view all round to it again was seen.
+  [[nodiscard]] bool round_closed() const { return sectors_ == Coverage::kSectors; }
+
+ private:
+  enum class Advice : std::uint8_t {
+    none,
+    nothing,
+    too_near,
+    too_far,
+    lost,
+    too_fast,
+    too_large,
+    featureless,
+    against,
+    closed
+  };
+  [[nodiscard]] Advice wanted(const CaptureStatus& status) const;
+  [[nodiscard]] static const char* words(Advice advice);
+
+  double rate_;
+  CaptureStatus status_;
+  int sectors_ = 0;
+  bool from_above_ = false, told_closed_ = false;
+  std::string missing_;
+  Advice reason_ = Advice::none;
+  int pictures_with_reason_ = 0;
+  std::vector<std::int64_t> told_ = std::vector<std::int64_t>(10, -1000000);  // at which picture
+  std::int64_t pictures_ = 0;
+};
+
+}  // namespace pliant

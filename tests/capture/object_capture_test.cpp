@@ -1,0 +1,171 @@
+// Whole captures: what is fused, what is left out, and what it costs.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "firmware-app/measure/path_cost.hpp"
+#include "tests/capture/capture_run.hpp"
+#include "tests/capture/scene.hpp"
+
+namespace pliant::test {
+namespace {
+
+/// A capture of drawn scenes.
+class DrawnCapture : public testing::Test {
+ protected:
+  DrawnCapture() {
+    settings_.size = 0.3;
+    const std::size_t bytes = ObjectCapture::workspace_bytes(small_camera(), {}, settings_);
+    block_ = block_of(bytes);
+    EXPECT_EQ(capture_.start(small_camera(), {}, settings_, {block_.get(), bytes}), nullptr);
+  }
+  const CaptureStatus& show(const std::function<double(const Vector3&)>& nearest) {
+    return capture_.process(Picture(nearest, number_++).frame());
+  }
+  CaptureSettings settings_;
+  Block block_;
+  ObjectCapture capture_;
+  std::int64_t number_ = 0;
+};
+
+constexpr double kBall = 0.06;
+const Vector3 kMiddle(0, 0.005, 0.66);
+
+double ball_on_table(const Vector3& ray) {
+  return nearer(table_depth(ray), ball_depth(ray, kMiddle, kBall));
+}
+
+TEST_F(DrawnCapture, WaitsWhileNothingStandsOnTheTable) {
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(show(table_depth).state, CaptureState::waiting);
+  EXPECT_EQ(show(ball_on_table).state, CaptureState::capturing);
+}
+
+TEST_F(DrawnCapture, SaysThatTheSensorIsTooNearWhenThereIsNoReading) {
+  const CaptureStatus& status = show([](const Vector3&) { return 0; });
+  EXPECT_EQ(status.state, CaptureState::waiting);
+  EXPECT_TRUE(status.too_near);
+}
+
+TEST_F(DrawnCapture, ABallIsCalledFeatureless) {
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(show(ball_on_table).state, CaptureState::capturing);
+  EXPECT_TRUE(show(ball_on_table).featureless);
+}
+
+TEST_F(DrawnCapture, ABallFarAwayIsCalledTooFar) {
+  const auto far = [](const Vector3& ray) {
+    const Vector3 up(0, -0.8191520, -0.5735764);
+    const double z = plane_depth(ray, up, up.dot(Vector3(0, 0.1, 1.7)));
+    return nearer(z < 3 ? z : 0, ball_depth(ray, {0, 0, 1.62}, 0.12));
+  };
+  EXPECT_TRUE(show(far).too_far);
+  EXPECT_FALSE(show(ball_on_table).too_far);
+}
+
+TEST_F(DrawnCapture, AHandThatComesIntoThePictureIsNotFused) {
+  for (int i = 0; i < 10; ++i) static_cast<void>(show(ball_on_table));
+  for (int i = 0; i < 20; ++i) {
+    // A thick finger comes down upon the ball from the side.
+    const Vector3 finger(0.10 - 0.003 * i, -0.07, 0.62);
+    const auto& status =
+        show([&](const Vector3& ray) { return nearer(ball_on_table(ray), ball_depth(ray, finger, 0.025)); });
+    EXPECT_EQ(status.state, CaptureState::capturing) << i;
+    EXPECT_TRUE(status.against) << i;
+  }
+  const Geometry mesh = captured_mesh(capture_.volume(), {});
+  ASSERT_FALSE(mesh.vertices.empty());
+  // The ball's middle in the model's frame, from any captured pose.
+  const RigidTransform pose = show(ball_on_table).pose;
+  double farthest = 0;
+  for (const Point3f& p : mesh.vertices)
+    farthest = std::max(farthest, std::fabs((pose * to_vector(p) - kMiddle).norm() - kBall));
+  EXPECT_LT(farthest, 0.006);
+}
+
+TEST_F(DrawnCapture, RefusesWhatIsOutOfRange) {
+  CaptureSettings settings;
+  settings.size = 3;
+  EXPECT_NE(capture_.start(small_camera(), {}, settings, {}), nullptr);
+  settings.size = 0.3;
+  settings.voxel = 1;
+  EXPECT_NE(capture_.start(small_camera(), {}, settings, {}), nullptr);
+  settings.voxel = 0;
+  EXPECT_NE(capture_.start(small_camera(), {}, settings, {block_.get(), 4096}), nullptr)
+      << "too small a block";
+}
+
+TEST(ObjectCapture, MakesNoHeapCallInAPicture) {
+  if (!heap_is_watched()) GTEST_SKIP() << "a sanitizer brings a heap of its own";
+  const auto source = simulated("box?motion=turned&frames=40&width=320&height=240");
+  const std::size_t bytes = ObjectCapture::workspace_bytes(source->intrinsics(), source->sensor(), {});
+  const Block block = block_of(bytes);
+  ObjectCapture capture;
+  ASSERT_EQ(capture.start(source->intrinsics(), source->sensor(), {}, {block.get(), bytes}), nullptr);
+  PathCost cost;
+  SourceItem item;
+  for (source->next(0, item); item.event == SourceEvent::frame; source->next(0, item)) {
+    const PathWatch watch(cost);
+    static_cast<void>(capture.process(item.frame));
+  }
+  {
+    const PathWatch watch(cost);
+    static_cast<void>(capture.finish());
+  }
+  EXPECT_EQ(cost.heap_calls.load(), 0U);
+  EXPECT_GT(capture.keyframes().all().size(), 10U);
+}
+
+/// FNV-1a over the volume.
+std::uint64_t digest(const DistanceVolume& volume) {
+  std::uint64_t hash = 14695981039346656037U;
+  const int n = volume.plan().cells;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const Voxel& voxel = volume.at(x, y, z);
+        const auto word =
+            static_cast<std::uint32_t>(static_cast<std::uint16_t>(voxel.distance)) << 16 | voxel.weight;
+        hash = (hash ^ word) * 1099511628211U;
+      }
+  return hash;
+}
+
+std::uint64_t digest_with(Kernels kernels) {
+  const auto source = simulated("cushion?motion=turned&frames=24&width=320&height=240");
+  CaptureSettings settings;
+  settings.kernels = kernels;
+  settings.size = 0.4;
+  settings.voxel = 0.004;
+  CaptureRun run;
+  run.run(*source, settings);
+  run.finish();
+  return digest(run.capture.volume());
+}
+
+TEST(ObjectCapture, AllKernelsGiveTheSameVolume) {
+  EXPECT_EQ(digest_with(Kernels::scalar), digest_with(Kernels::automatic));
+}
+
+TEST(ObjectCapture, IsLostWhenTheObjectJumpsAndFindsItAgain) {
+  const auto source = simulated("figure?motion=turned&frames=150&width=320&height=240");
+  const std::size_t bytes = ObjectCapture::workspace_bytes(source->intrinsics(), source->sensor(), {});
+  const Block block = block_of(bytes);
+  ObjectCapture capture;
+  ASSERT_EQ(capture.start(source->intrinsics(), source->sensor(), {}, {block.get(), bytes}), nullptr);
+  std::vector<std::vector<std::uint16_t>> pictures;
+  SourceItem item;
+  for (source->next(0, item); item.event == SourceEvent::frame; source->next(0, item))
+    pictures.emplace_back(item.frame.depth, item.frame.depth + 320 * 240);
+  std::int64_t number = 0;
+  const auto show = [&](std::size_t i) -> const CaptureStatus& {
+    return capture.process({pictures[i].data(), 320, 240, 320, 33333 * number, number++});
+  };
+  for (std::size_t i = 0; i < 40; ++i) ASSERT_EQ(show(i).state, CaptureState::capturing) << i;
+  const std::int64_t fused = capture.figures().fused;
+  // A quarter of a turn on in one picture: nothing of it may be fused.
+  for (std::size_t i = 85; i < 90; ++i) EXPECT_EQ(show(i).state, CaptureState::lost) << i;
+  EXPECT_EQ(capture.figures().fused, fused);
+  EXPECT_EQ(show(39).state, CaptureState::capturing) << "shown again what was seen last";
+}
+
+}  // namespace
+}  // namespace pliant::test

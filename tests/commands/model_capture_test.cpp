@@ -1,0 +1,122 @@
+// pliant model capture.
+#include <signal.h>
+#include <unistd.h>
+
+#include "drivers/geometry_files/geometry.hpp"
+#include "tests/commands/program.hpp"
+
+namespace pliant::test {
+namespace {
+
+/// Small pictures and coarse voxels: what is written counts here, how good it is in tests/capture.
+class CaptureCommand : public CommandTest {
+ protected:
+  [[nodiscard]] static std::vector<std::string> words(const std::string& source, const std::string& output) {
+    return {"model", "capture", "--source", source, "-o", output, "--size", "0.4", "--voxel", "0.004"};
+  }
+};
+
+constexpr const char* kTurned = "simulated:box?motion=turned&frames=70&width=320&height=240";
+
+TEST_F(CaptureCommand, MakesAModelThatCanBeTracked) {
+  std::vector<std::string> command = words(kTurned, at("box.model"));
+  command.insert(command.end(), {"--ply", at("box.ply")});
+  const Ended captured = run_pliant(command);
+  EXPECT_EQ(captured.code, 0) << captured.err;
+  EXPECT_TRUE(captured.out.starts_with("memory: ")) << captured.out;
+  EXPECT_NE(captured.out.find("fused: 70 of 70 pictures"), std::string::npos) << captured.out;
+  EXPECT_NE(captured.out.find("seen: 8 of 8 sides\n"), std::string::npos) << captured.out;
+  EXPECT_NE(captured.out.find("characterisable: yes"), std::string::npos) << captured.out;
+  EXPECT_EQ(captured.out.find("back: unknown"), std::string::npos) << captured.out;
+  EXPECT_NE(captured.err.find("seen from all sides"), std::string::npos) << captured.err;
+
+  const Result<Geometry> surface = read_geometry(at("box.ply"));
+  ASSERT_TRUE(surface) << surface.error().message;
+  EXPECT_GT(surface->triangles.size(), 3000U);
+  EXPECT_EQ(run_pliant({"model", "build", at("box.ply"), "-o", at("again.model")}).code, 0);
+
+  const Ended tracked = run_pliant({"run", "--model", at("box.model"), "--source",
+                                    "simulated:box?frames=40&width=320&height=240", "--lcm-url", "none"});
+  EXPECT_EQ(tracked.code, 0) << tracked.out << tracked.err;
+}
+
+TEST_F(CaptureCommand, MarksAModelOfOneSideAsFrontOnly) {
+  const Ended captured =
+      run_pliant(words("simulated:figure?frames=12&width=320&height=240", at("front.model")));
+  EXPECT_EQ(captured.code, 0) << captured.err;
+  EXPECT_NE(captured.out.find("back: unknown"), std::string::npos) << captured.out;
+  EXPECT_NE(captured.out.find("not the front right"), std::string::npos) << captured.out;
+  const Ended info = run_pliant({"model", "info", at("front.model")});
+  EXPECT_NE(info.out.find("back: unknown"), std::string::npos) << info.out;
+}
+
+TEST_F(CaptureCommand, CapturingTwiceGivesTheSameBytes) {
+  const char* const source = "simulated:box?motion=circled&frames=12&width=320&height=240";
+  ASSERT_EQ(run_pliant(words(source, at("a.model"))).code, 0);
+  ASSERT_EQ(run_pliant(words(source, at("b.model"))).code, 0);
+  EXPECT_EQ(read_file(at("a.model")), read_file(at("b.model")));
+}
+
+TEST_F(CaptureCommand, SaysWhenNothingStandsThere) {
+  const std::string folder = small_recording(3);
+  std::vector<std::string> command = words("recording:" + folder, at("m"));
+  // A volume far smaller than anything in the picture: nothing counts as an object.
+  command[7] = std::string("0.05");
+  const Ended ended = run_pliant(command);
+  EXPECT_EQ(ended.code, 1) << ended.out;
+  EXPECT_NE(ended.err.find("nothing was captured"), std::string::npos) << ended.err;
+  EXPECT_FALSE(std::filesystem::exists(at("m")));
+}
+
+TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
+  const Ended ended = run_pliant(words("simulated:box?frames=8&width=320&height=240", "/dev/full"));
+  EXPECT_EQ(ended.code, 3);
+  const std::size_t kept = ended.err.find("kept as ");
+  ASSERT_NE(kept, std::string::npos) << ended.err;
+  const std::string path = ended.err.substr(kept + 8, ended.err.find('\n', kept) - kept - 8);
+  EXPECT_EQ(run_pliant({"model", "info", path}).code, 0) << path;
+  std::filesystem::remove(path);
+}
+
+TEST_F(CaptureCommand, AnInterruptKeepsWhatIsThere) {
+  const pid_t process = start_pliant(
+      words("simulated:box?motion=turned&frames=100000&width=320&height=240", at("box.model")), folder_);
+  for (int i = 0; i < 200 && read_file(folder_ / "out.txt").empty(); ++i) usleep(20'000);
+  usleep(1'500'000);
+  kill(process, SIGINT);
+  const Ended ended = wait_for(process, folder_);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(run_pliant({"model", "info", at("box.model")}).code, 0);
+}
+
+TEST_F(CaptureCommand, TakesKnownPoses) {
+  const std::string folder = at("recording");
+  ASSERT_EQ(run_pliant({"record", "--source", "simulated:box?motion=circled&frames=20&width=320&height=240",
+                        "-o", folder})
+                .code,
+            0);
+  std::vector<std::string> command = words("recording:" + folder, at("known.model"));
+  command.insert(command.end(), {"--poses", folder + "/groundtruth.txt"});
+  const Ended captured = run_pliant(command);
+  EXPECT_EQ(captured.code, 0) << captured.err;
+  EXPECT_NE(captured.out.find("fused: 20 of 20 pictures"), std::string::npos) << captured.out;
+  command.back() = at("other.txt");
+  write_file(command.back(), "999.5 0 0 1 0 0 0 1\n");
+  expect_refused(run_pliant(command), 2, {"other.txt", "no pose has the time"});
+  write_file(command.back(), "1 2 3\n");
+  expect_refused(run_pliant(command), 2, {"other.txt:1"});
+}
+
+TEST_F(CaptureCommand, BadWordsAreRefused) {
+  std::vector<std::string> command = words(kTurned, at("m"));
+  command.insert(command.end(), {"--at", "700", "10"});
+  expect_refused(run_pliant(command), 2, {"--at 700 10", "320x240"});
+  expect_refused(run_pliant(words("recording:none", at("m"))), 2, {"none"});
+  expect_refused(run_pliant({"model", "capture", "--source", kTurned}), 2, {"--output"});
+  command = words(kTurned, at("m"));
+  command[7] = std::string("7");
+  expect_refused(run_pliant(command), 2, {"--size"});
+}
+
+}  // namespace
+}  // namespace pliant::test
