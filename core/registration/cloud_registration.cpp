@@ -52,6 +52,7 @@ const char* CloudRegistration::start(const ModelView& model, std::size_t scene_p
   state->matcher.start(state->settings.kernels);
   state->support = model.header().support_radius;
   if (!state->model_index.build(model.positions(), 1.5 * model.spacing())) return "the model has no spacing";
+  state->warp.start(state->model);
   for (std::size_t i = 0; i < model.size(); ++i) state->prefix[i] = static_cast<std::uint16_t>(i);
   return nullptr;
 }
