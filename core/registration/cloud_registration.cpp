@@ -64,7 +64,7 @@ void CloudRegistration::done(RegistrationStage stage, bool model_side) const noe
 bool CloudRegistration::inspect(std::span<const Point3f> scene) noexcept {
   RegistrationState& s = *state_;
   s.result = RegistrationResult();
-  s.key_count = 0;
+  s.key_count = s.posed_count = 0;
   s.result.outcome = examine(s, scene);
   if (s.result.outcome != RegistrationOutcome::found) return false;
   thin_scene(s, scene);
@@ -212,6 +212,7 @@ const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& fr
   s.result = RegistrationResult();
   thin_scene(s, points);
   prepare();
+  s.posed_count = 0;  // pictures are not matched by groups
   s.key_count = keys;
   for (std::size_t k = 0; k < count; ++k) complete(k, seen[k].pose, seen[k].score);
   return finish(count);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/detect/fast_transform.hpp"
 #include "core/registration/chain_measures.hpp"
@@ -13,7 +14,13 @@ namespace {
 constexpr double kFirstGate = 0.25, kLastSpacings = 2.5;  // of the model's radius; of the spacing
 constexpr double kHold = 1.0;  // of a patch's points: what its region's pull is worth where it explains it
 constexpr double kAlongside = 0.1;  // weight of a reading across its plane, against that along its normal
-constexpr float kSameSide = 0.5F;   // cosine of the angle between normals that may belong together
+constexpr std::size_t kMostFree = 2500;  // points that ask, and scene points that do, in a round
+constexpr double kAround = 0.25;         // of the model's radius: what bears a match out lies so near
+constexpr std::size_t kMostAround = 96;
+constexpr double kFrameError = 0.25;  // radians that a local frame is off
+constexpr std::uint32_t kFewestAgree = 3;
+constexpr double kAgreeShare = 0.3;
+constexpr float kSameSide = 0.5F;  // cosine of the angle between normals that may belong together
 
 /// A reading of a patch: the point `at` should come to `to`, by all of `weight` along `normal` and a little
 /// across.
@@ -61,7 +68,9 @@ void find_homes(Warp& w) noexcept {
     const auto most = std::max_element(counts.begin(), counts.end());
     const bool some = *most > 0;
     w.room.home[p] = some ? static_cast<std::int8_t>(most - counts.begin()) : std::int8_t{-1};
-    w.room.rigid[p] = 10 * *most >= 9 * patches.sizes[p];
+    std::uint32_t explained = 0;
+    for (const std::uint32_t c : counts) explained += c;
+    w.room.rigid[p] = 10 * explained >= 9 * patches.sizes[p];
     w.room.hold[p] = *most;
   }
   // What no region explains starts with the nearest one that has a home.
@@ -81,12 +90,77 @@ void find_homes(Warp& w) noexcept {
   }
 }
 
-/// Places the points of patches that may move; returns how many.
+/// Matches of points that may move, each borne out by its neighbours: the pose that its local frames propose
+/// brings most of the matches around it to their scene points too. A limb that bends is rigid over so short a
+/// way. Writes their numbers to room.pulls; returns how many.
+std::size_t find_pulls(Warp& w) noexcept {
+  RegistrationState& s = w.s;
+  const std::size_t count = std::min(s.posed_count, w.room.places.size());
+  for (std::size_t k = 0; k < count; ++k) w.room.places[k] = s.posed[k].model;
+  const double around = kAround * s.model.radius();
+  static_cast<void>(w.room.free_grid.build(w.room.places.first(count), 0.5 * around));
+  for (std::size_t p = 0; p < w.room.patches.count; ++p) w.room.borne[p] = 0;
+  std::size_t pulls = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t p = w.room.patches.patch_of[s.matches[k].model];
+    if (w.room.rigid[p]) continue;
+    const RigidTransform pose = pose_from_frames(s.posed[k]);
+    const Vector3 own = to_vector(s.posed[k].model);
+    std::uint32_t near = 0, agree = 0;
+    w.room.free_grid.visit_within(s.posed[k].model, static_cast<float>(around), kMostAround,
+                                  [&](std::uint32_t j, const Point3f& m, float /*square*/) {
+                                    if (j == k) return;
+                                    ++near;
+                                    const double limit =
+                                        match_tolerance(s) + kFrameError * (to_vector(m) - own).norm();
+                                    const Vector3 gap = pose * to_vector(m) - to_vector(s.posed[j].scene);
+                                    agree += gap.squaredNorm() < limit * limit ? 1U : 0U;
+                                  });
+    if (agree < kFewestAgree || static_cast<double>(agree) < kAgreeShare * near) continue;
+    w.room.pulls[pulls++] = static_cast<std::uint16_t>(k);
+    if (agree <= w.room.borne[p]) continue;
+    w.room.borne[p] = agree;
+    w.room.pose[p] = pose;
+  }
+  // Patches without a match start as a neighbour that has one.
+  for (std::size_t sweep = 0; sweep < w.room.patches.count; ++sweep) {
+    bool changed = false;
+    for (std::size_t k = 0; k < w.room.patches.border_count; ++k) {
+      const PatchBorder& border = w.room.patches.borders[k];
+      for (const auto& [from, to] : {std::pair{border.a, border.b}, std::pair{border.b, border.a}}) {
+        if (w.room.rigid[to] || w.room.borne[to] != 0 || w.room.hold[to] != 0 || w.room.borne[from] == 0)
+          continue;
+        w.room.pose[to] = w.room.pose[from];
+        w.room.borne[to] = 1;
+        changed = true;
+      }
+    }
+    if (!changed) break;
+  }
+  return pulls;
+}
+
+void add_pulls(Warp& w, std::size_t pulls, double weight, double limit) noexcept {
+  for (std::size_t k = 0; k < pulls; ++k) {
+    const std::size_t match = w.room.pulls[k];
+    const std::size_t p = w.room.patches.patch_of[w.s.matches[match].model];
+    const Vector3 at = w.room.pose[p] * to_vector(w.s.posed[match].model);
+    const Vector3 gap = to_vector(w.s.posed[match].scene) - at;
+    const Vector3 arm = at - w.room.pose[p] * w.room.patches.centres[p];
+    const double k_pull = weight * tukey(gap.squaredNorm(), limit);
+    w.room.system.own(p).add_point_spring(k_pull, arm);
+    w.room.system.force(p).head<3>() += k_pull * arm.cross(gap);
+    w.room.system.force(p).tail<3>() += k_pull * gap;
+  }
+}
+
+/// Places the points of patches that may move, at most kMostFree of them (the first points of the model are
+/// spread evenly); returns how many.
 std::size_t place_free(Warp& w) noexcept {
   const PatchTables& patches = w.room.patches;
   std::size_t count = 0;
   for (std::size_t p = 0; p < patches.count; ++p) w.room.fast[p] = FastTransform(w.room.pose[p]);
-  for (std::size_t i = 0; i < w.s.model.size(); ++i) {
+  for (std::size_t i = 0; i < w.s.model.size() && count < kMostFree; ++i) {
     const std::size_t p = patches.patch_of[i];
     if (w.room.rigid[p]) continue;
     w.room.free[count] = static_cast<std::uint16_t>(i);
@@ -111,7 +185,14 @@ std::size_t near_scene(Warp& w, std::size_t free_count, double reach) noexcept {
     w.room.targets[count] = s.base[j];
     w.room.target_normals[count++] = s.working_normals[k];
   }
-  return count;
+  // Every n-th of them is enough.
+  const std::size_t step = (count + kMostFree - 1) / kMostFree;
+  std::size_t kept = 0;
+  for (std::size_t j = 0; step > 1 && j < count; j += step, ++kept) {
+    w.room.targets[kept] = w.room.targets[j];
+    w.room.target_normals[kept] = w.room.target_normals[j];
+  }
+  return step > 1 ? kept : count;
 }
 
 Point3f unit(const Normal16& n) noexcept {
@@ -186,6 +267,7 @@ void WarpRoom::lay_out(Workspace& workspace, std::size_t model_points, std::size
   tables.lay_out(workspace, model_points);
   patches.lay_out(workspace, model_points);
   queue = workspace.take<std::uint16_t>(model_points);
+  pulls = workspace.take<std::uint16_t>(model_points);
   free = workspace.take<std::uint16_t>(model_points);
   places = workspace.take<Point3f>(model_points);
   normals = workspace.take<Point3f>(model_points);
@@ -203,6 +285,7 @@ void WarpRoom::start(const ModelView& model) noexcept {
 void warp_cloud(RegistrationState& s, const CloudWarpSettings& settings, InstanceBuffers& buffers) noexcept {
   Warp w{s, buffers, s.warp};
   find_homes(w);
+  const std::size_t pulls = find_pulls(w);
   std::size_t free_count = place_free(w);
   const double first = kFirstGate * s.model.radius(), last = kLastSpacings * s.spacing;
   if (free_count > 0) {
@@ -220,6 +303,8 @@ void warp_cloud(RegistrationState& s, const CloudWarpSettings& settings, Instanc
       const double stiff = 1 + 15 * (1 - done) * (1 - done);
       w.room.system.clear(w.room.patches.count);
       add_readings(w, free_count, targets, gate);
+      // What descriptors say is good to a keypoint's distance.
+      if (done < 0.7) add_pulls(w, pulls, 4 * (1 - done), 2 * first * (1 - done) + 2 * match_tolerance(s));
       add_springs(w, stiff * stretch, stiff * bend);
       if (!w.room.system.solve(settings.iterations)) break;
       for (std::size_t p = 0; p < w.room.patches.count; ++p) {

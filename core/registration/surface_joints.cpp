@@ -12,6 +12,7 @@ namespace {
 constexpr float kNowhere = 1e9F;
 constexpr int kSweeps = 48;
 constexpr double kStrain = 0.15;       // that soft matter takes across a joint
+constexpr double kJoint = 0.1;         // of the model's radius: as deep as a joint reaches into a part
 constexpr double kLargestTear = 0.01;  // metres: what no joint may come apart by
 
 }  // namespace
@@ -59,22 +60,19 @@ double joint_gap(const RegistrationState& s, std::span<const std::int8_t> labels
   for (std::size_t i = 0; i < s.model.size(); ++i)
     if (s.islands.piece()[i] == piece && s.along[i] > 0) nearest = std::min(nearest, s.along[i]);
   if (nearest >= kNowhere) return 0;
-  // The ring of the piece that is nearest to what is explained, and where that is. Means over the ring: what
-  // turns about the middle of a limb stays joined there, though its skin stretches on one side.
-  const float ring = nearest + 2 * static_cast<float>(s.model.spacing());
-  Vector3 here = Vector3::Zero(), there = Vector3::Zero();
-  double along = 0;
-  std::size_t count = 0;
+  // The joint is somewhere near: where a limb turns about it, the axis runs through the limb and its ends on
+  // the skin stay together, while the rest of the ring stretches. What is torn off is apart everywhere.
+  const float ring = nearest + static_cast<float>(kJoint * s.model.radius());
+  double least = 1e9;
   for (std::size_t i = 0; i < s.model.size(); ++i) {
     if (s.islands.piece()[i] != piece || s.along[i] <= 0 || s.along[i] > ring) continue;
     const std::size_t anchor = s.anchor[i];
-    here += pose * to_vector(s.model.positions()[i]);
-    there += poses[static_cast<std::size_t>(labels[anchor])] * to_vector(s.model.positions()[anchor]);
-    along += static_cast<double>(s.along[i]);
-    ++count;
+    const Vector3 here = pose * to_vector(s.model.positions()[i]);
+    const Vector3 there =
+        poses[static_cast<std::size_t>(labels[anchor])] * to_vector(s.model.positions()[anchor]);
+    least = std::min(least, (here - there).norm() - static_cast<double>(s.along[i]));
   }
-  const double apart = (here - there).norm() / static_cast<double>(count);
-  return std::max(0.0, apart - along / static_cast<double>(count));
+  return std::max(0.0, least);
 }
 
 double largest_joint_gap(const RegistrationState& s) noexcept {

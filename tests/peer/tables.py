@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The tables of BENCHMARK.md that stand beside PCL's: tests/peer/tables.py COMPARE_WITH_PCL PLIANT
 
 COMPARE_WITH_PCL and PLIANT are the programs; needs ../shared beside the repository (or PLIANT_SHARED) and
