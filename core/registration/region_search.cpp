@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kLittleTurn = 0.87;           // cosine of 30°
 constexpr std::uint32_t kJoined = 0x3FFFFFFF;  // in place of a piece's size: large, and looked at
-constexpr float kDoubtful = 0.3F;              // of what a point may be off its region: more than chance
+constexpr std::uint32_t kFewMatches = 20;      // too few to tell a share from
+constexpr double kAgreeShare = 0.035;
+constexpr float kDoubtful = 0.3F;  // of what a point may be off its region: more than chance
 
 /// Open model points, the first `most` in the model's order (evenly spread), to s.part.
 std::size_t open_part(RegistrationState& s, std::size_t most) noexcept {
@@ -39,6 +41,22 @@ struct Gain {
   std::uint32_t piece = 0;
 };
 
+/// Whether the descriptors bear a pose of the piece `piece` of s.islands out: of its matches, it explains
+/// more than chance would. A piece can slide along something of a like shape, and fits it closely, but its
+/// matches say otherwise: of a false pose's, up to 2 % are explained, of a right one's 5 % and more.
+bool borne_out(const RegistrationState& s, std::uint32_t piece, const RigidTransform& pose) noexcept {
+  const double limit = 2 * match_tolerance(s);
+  std::uint32_t matches = 0, agree = 0;
+  for (std::size_t k = 0; k < s.posed_count; ++k) {
+    if (s.islands.piece()[s.matches[k].model] != piece) continue;
+    ++matches;
+    const Vector3 gap = pose * to_vector(s.posed[k].model) - to_vector(s.posed[k].scene);
+    agree += gap.squaredNorm() < limit * limit ? 1U : 0U;
+  }
+  return matches < kFewMatches ||
+         (agree >= kFewestAgree && static_cast<double>(agree) >= kAgreeShare * matches);
+}
+
 /// What a pose explains of the open points: the largest connected piece, which must stay joined to what the
 /// regions so far explain.
 Gain gain_of(RegistrationState& s, const InstanceBuffers& buffers, std::span<const RigidTransform> poses,
@@ -48,6 +66,7 @@ Gain gain_of(RegistrationState& s, const InstanceBuffers& buffers, std::span<con
   Gain gain;
   gain.piece = s.islands.pieces(
       s.model, [&](std::size_t i) { return on_surface(s.off[i]); }, gain.points);
+  if (gain.points > 0 && !borne_out(s, gain.piece, pose)) gain.points = 0;
   if (s.settings.constraints && gain.points > 0 &&
       joint_gap(s, buffers.labels, poses, gain.piece, pose) > largest_joint_gap(s))
     gain.points = 0;

@@ -76,7 +76,7 @@ double joint_gap(const RegistrationState& s, std::span<const std::int8_t> labels
 }
 
 double largest_joint_gap(const RegistrationState& s) noexcept {
-  return std::min(kLargestTear, 0.05 * s.model.radius() + 2 * s.spacing);
+  return std::min(kLargestTear, 0.02 * s.model.radius() + s.spacing);
 }
 
 }  // namespace pliant
