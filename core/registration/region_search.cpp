@@ -14,6 +14,7 @@ namespace {
 constexpr double kLittleTurn = 0.87;           // cosine of 30°
 constexpr std::uint32_t kJoined = 0x3FFFFFFF;  // in place of a piece's size: large, and looked at
 constexpr std::uint32_t kFewMatches = 20;      // too few to tell a share from
+constexpr std::uint32_t kFewestAgree = 3;
 constexpr double kAgreeShare = 0.035;
 constexpr float kDoubtful = 0.3F;  // of what a point may be off its region: more than chance
 
