@@ -60,17 +60,19 @@ double joint_gap(const RegistrationState& s, std::span<const std::int8_t> labels
   for (std::size_t i = 0; i < s.model.size(); ++i)
     if (s.islands.piece()[i] == piece && s.along[i] > 0) nearest = std::min(nearest, s.along[i]);
   if (nearest >= kNowhere) return 0;
-  // The joint is somewhere near: where a limb turns about it, the axis runs through the limb and its ends on
-  // the skin stay together, while the rest of the ring stretches. What is torn off is apart everywhere.
+  // The joint is somewhere between: where a limb turns about it, the axis runs through the limb, and what
+  // lies on it both transforms take to one place, while the rest of the ring stretches. What is torn off is
+  // apart everywhere.
   const float ring = nearest + static_cast<float>(kJoint * s.model.radius());
   double least = 1e9;
   for (std::size_t i = 0; i < s.model.size(); ++i) {
-    if (s.islands.piece()[i] != piece || s.along[i] <= 0 || s.along[i] > ring) continue;
+    if (s.along[i] <= 0 || s.along[i] > ring) continue;
     const std::size_t anchor = s.anchor[i];
-    const Vector3 here = pose * to_vector(s.model.positions()[i]);
-    const Vector3 there =
-        poses[static_cast<std::size_t>(labels[anchor])] * to_vector(s.model.positions()[anchor]);
-    least = std::min(least, (here - there).norm() - static_cast<double>(s.along[i]));
+    const RigidTransform& region = poses[static_cast<std::size_t>(labels[anchor])];
+    for (const std::size_t k : {i, anchor}) {
+      const Vector3 x = to_vector(s.model.positions()[k]);
+      least = std::min(least, (pose * x - region * x).norm() - kStrain * static_cast<double>(s.along[i]));
+    }
   }
   return std::max(0.0, least);
 }

@@ -19,9 +19,9 @@ void measure_reach(RegistrationState& s, std::span<const std::int8_t> labels) no
                                 std::span<const RigidTransform> poses, std::size_t i,
                                 const Vector3& scene) noexcept;
 
-/// By how much `pose` would tear the piece `piece` of s.islands off what the other regions explain: how much
-/// farther apart the two sides of the joint come than they are along the surface, where it holds best,
-/// metres, at least 0. After measure_reach(). A piece that hangs on nothing tears nothing.
+/// By how much `pose` would tear the piece `piece` of s.islands off what the other regions explain, metres,
+/// at least 0: how far apart the two transforms take what lies between, where they agree best, less what
+/// matter stretches. After measure_reach(). A piece that hangs on nothing tears nothing.
 [[nodiscard]] double joint_gap(const RegistrationState& s, std::span<const std::int8_t> labels,
                                std::span<const RigidTransform> poses, std::uint32_t piece,
                                const RigidTransform& pose) noexcept;

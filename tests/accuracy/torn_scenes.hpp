@@ -82,8 +82,8 @@ inline TornResult register_torn(const ModelView& model, const std::vector<Point3
   out.found = !result.instances.empty();
   if (!out.found) return out;
   const InstanceResult& instance = result.instances[0];
-  out.regions = static_cast<int>(instance.regions.size()) - 1;
   for (std::size_t r = 1; r < instance.regions.size(); ++r) {
+    out.regions += instance.regions[r].points > 0 ? 1 : 0;
     double least = 1e9;
     for (std::size_t i = 0; i < model.size(); ++i) {
       if (instance.labels[i] != static_cast<std::int8_t>(r)) continue;
@@ -94,7 +94,7 @@ inline TornResult register_torn(const ModelView& model, const std::vector<Point3
           least =
               std::min(least, (instance.regions[r].transform * x - instance.regions[k].transform * x).norm());
     }
-    out.worst_tear = std::max(out.worst_tear, least);
+    if (least < 1e9) out.worst_tear = std::max(out.worst_tear, least);  // else it lost all its points
   }
   return out;
 }
