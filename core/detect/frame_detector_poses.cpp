@@ -18,8 +18,9 @@ constexpr double kPlainWeight =
     0.3;  // of agreeing with a wall, at the first look: any pose can sink into one
 
 // What scores so low that clutter reaches it must have the descriptors on its side: of the keypoints that lie
-// on the object, so many have their best match near the right place. By chance about one in a hundred has.
-constexpr double kLeastSupport = 0.08;
+// on the object, so many have their best match near the right place. By chance about one in a hundred has, on
+// a deformed real object one in twenty.
+constexpr double kLeastSupport = 0.04;
 constexpr std::size_t kFewestSupporters = 4;
 
 Vector3 to_vector(const Point3f& p) noexcept {

@@ -51,8 +51,7 @@ void PoseVotes::index() noexcept {
   static_cast<void>(grid_.build(places_.first(count_), static_cast<double>(reach_)));
 }
 
-bool PoseVotes::same_attitude(std::size_t a, std::size_t b) const noexcept {
-  const Turn &p = turns_[a], &q = turns_[b];
+bool PoseVotes::same_attitude(const Turn& p, const Turn& q) noexcept {
   return std::fabs(p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z) > kHalfTurnCosine;
 }
 

@@ -58,7 +58,10 @@ class PoseVotes {
   [[nodiscard]] bool alike(std::size_t a, std::size_t b) const noexcept {
     return same_place(a, b) && same_attitude(a, b);
   }
-  [[nodiscard]] bool same_attitude(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] static bool same_attitude(const Turn& p, const Turn& q) noexcept;
+  [[nodiscard]] bool same_attitude(std::size_t a, std::size_t b) const noexcept {
+    return same_attitude(turns_[a], turns_[b]);
+  }
   [[nodiscard]] bool same_place(std::size_t a, std::size_t b) const noexcept;
 
   std::span<Point3f> places_;  // where each pose puts the model's centre
