@@ -1,6 +1,7 @@
 // Pictures like the paper's Figures 8 to 10: draw_registration CASE_DIR SCENE OUT.png MODEL_KEYPOINTS
 // SCENE_KEYPOINTS. Registers a case and draws the model's points where the scene shows them, regions and
 // deformed points in their colours, from the side on which the points are spread widest.
+#include <Eigen/Geometry>
 #include <cstdio>
 #include <cstdlib>
 
