@@ -9,7 +9,7 @@
 namespace pliant {
 
 struct CloudWarpSettings {
-  int rounds = 20;        ///< of looking up the scene and solving [1, 64]
+  int rounds = 10;        ///< of looking up the scene and solving [1, 64]
   int iterations = 16;    ///< of the solver in each round [1, 64]
   double material = 0.5;  ///< 0 stiff … 1 soft [0, 1]
 };
