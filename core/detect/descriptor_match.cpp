@@ -58,6 +58,10 @@ struct DescriptorMatcher::Best {
 
 void DescriptorMatcher::lay_out(Workspace& workspace, std::size_t candidates) noexcept {
   close_.lay_out(workspace, candidates);
+  lay_out_helper(workspace, candidates);
+}
+
+void DescriptorMatcher::lay_out_helper(Workspace& workspace, std::size_t candidates) noexcept {
   bounds_ = workspace.take<std::int32_t>(kBoundQueries * (candidates + kBoundLanes));
   left_ = workspace.take<std::uint32_t>(candidates + kBoundLanes);
   padded_ = workspace.take<Descriptor>(kBoundQueries);
@@ -66,6 +70,12 @@ void DescriptorMatcher::lay_out(Workspace& workspace, std::size_t candidates) no
 void DescriptorMatcher::start(Kernels kernels) noexcept {
   kernel_ = dot_kernel(kernels);
   close_.start(kernels);
+}
+
+void DescriptorMatcher::join(const DescriptorMatcher& prepared) noexcept {
+  kernel_ = prepared.kernel_;
+  close_ = prepared.close_;
+  candidates_ = prepared.candidates_;
 }
 
 void DescriptorMatcher::prepare(std::span<const Descriptor> candidates) noexcept {

@@ -53,6 +53,10 @@ class DescriptorMatcher {
   /// Takes the memory for up to `candidates` candidates.
   void lay_out(Workspace& workspace, std::size_t candidates) noexcept;
   void start(Kernels kernels) noexcept;
+  /// Takes memory to work with a matcher's candidates beside it (see join()).
+  void lay_out_helper(Workspace& workspace, std::size_t candidates) noexcept;
+  /// A helper matches against what `prepared` was prepared with, at the same time as others do.
+  void join(const DescriptorMatcher& prepared) noexcept;
 
   /// Sets the candidates (the model's descriptors, which must outlive the matching); those beyond the
   /// capacity are not looked at.

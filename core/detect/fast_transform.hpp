@@ -9,9 +9,10 @@ namespace pliant {
 
 /// A rigid transform in single precision, for thousands of points.
 struct FastTransform {
-  float r[9];
-  float t[3];
+  float r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  float t[3] = {0, 0, 0};
 
+  FastTransform() noexcept = default;
   explicit FastTransform(const RigidTransform& pose) noexcept {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) r[3 * i + j] = static_cast<float>(pose.rotation(i, j));

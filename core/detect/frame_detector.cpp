@@ -47,6 +47,8 @@ void FrameDetector::lay_out(Workspace& workspace, const ModelView& model, const 
   frames_ = workspace.take<LocalFrame>(settings_.keypoints);
   matches_ = workspace.take<Match>(settings_.keypoints * settings_.matches);
   proposals_ = workspace.take<Proposal>(settings_.keypoints * settings_.matches);
+  const std::size_t keypoints = static_cast<std::size_t>(settings_.rounds) * settings_.keypoints;
+  votes_.lay_out(workspace, keypoints * settings_.matches, keypoints);
 }
 
 void FrameDetector::start(const ModelView& model, const Intrinsics& camera, const SensorDescription& sensor,
@@ -65,6 +67,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
   fine_ = 0.03 * model.radius();
   finalists_.start(model.centre(), model.radius());
   searches_ = 0;
+  votes_.start(model.centre(), model.radius());
   state_ = DetectState::idle;
 }
 
@@ -76,6 +79,7 @@ void FrameDetector::begin(const Surface& surface) noexcept {
   cursor_ = 0;
   round_ = 0;
   finalists_.clear();
+  votes_.clear();
   keypoints_used_ = 0;
   best_ = Detection();
   state_ = DetectState::working;
@@ -109,6 +113,10 @@ std::int64_t FrameDetector::slice() noexcept {
       return slice_match();
     case Phase::propose:
       return slice_propose();
+    case Phase::vote:
+      return slice_vote();
+    case Phase::look:
+      return slice_look();
     case Phase::shortlist:
       return slice_shortlist();
     case Phase::settle:
@@ -159,17 +167,17 @@ std::int64_t FrameDetector::slice_sample() noexcept {
   order_next_ = 0;
   const SpreadOrder order(point_count_);
   const std::size_t first = searches_ % point_count_;
-  // With a hint, those near it come first.
+  // With a hint, those near it come first. Walls and tables come last: they look alike everywhere.
   const Vector3 centre = hint_ * model_.centre();
+  const auto turn_of = [&](std::size_t at) {
+    const Vector3 apart = to_vector(points_[at]) - centre;
+    const bool far = hinted_ && apart.dot(apart) > hint_radius_ * hint_radius_;
+    return (far ? 2 : 0) + (normals_[at].pad != 0 ? 1 : 0);
+  };
   std::size_t placed = 0;
-  for (int near = hinted_ ? 1 : 0; near >= 0; --near)
-    for (std::size_t k = 0, at = first; k < point_count_; ++k, at = order.next(at)) {
-      if (hinted_) {
-        const Vector3 apart = to_vector(points_[at]) - centre;
-        if ((apart.dot(apart) <= hint_radius_ * hint_radius_) != (near == 1)) continue;
-      }
-      order_[placed++] = static_cast<std::uint32_t>(at);
-    }
+  for (int turn = 0; turn < 4; ++turn)
+    for (std::size_t k = 0, at = first; k < point_count_; ++k, at = order.next(at))
+      if (turn_of(at) == turn) order_[placed++] = static_cast<std::uint32_t>(at);
   begin_round();
   return static_cast<std::int64_t>(count) / 2 + 1;
 }

@@ -3,6 +3,7 @@
 // free space.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,6 +16,7 @@
 #include "core/detect/point_grid.hpp"
 #include "core/detect/pose_candidates.hpp"
 #include "core/detect/pose_evidence.hpp"
+#include "core/detect/pose_votes.hpp"
 #include "core/detect/shot.hpp"
 #include "core/detect/uniform_sampling.hpp"
 #include "core/memory/workspace.hpp"
@@ -69,13 +71,25 @@ class FrameDetector {
   [[nodiscard]] const Detection& best() const noexcept { return best_; }
 
  private:
-  enum class Phase : std::uint8_t { normals, sample, describe, match, propose, shortlist, settle };
+  enum class Phase : std::uint8_t {
+    normals,
+    sample,
+    describe,
+    match,
+    propose,
+    vote,
+    look,
+    shortlist,
+    settle
+  };
   struct Proposal {
     std::uint16_t scene = 0;  // keypoint
     std::uint16_t model = 0;
     float score = 0;
   };
   static constexpr std::size_t kShortlist = 96;  // proposals that are looked at closely
+  static constexpr std::size_t kVoted = 384;     // clusters of proposals that are looked at quickly
+  static constexpr std::size_t kByVotes = 48;    // of them, at most, for the votes that they got
 
   void begin_round() noexcept;
   std::int64_t slice() noexcept;
@@ -84,9 +98,12 @@ class FrameDetector {
   std::int64_t slice_describe() noexcept;
   std::int64_t slice_match() noexcept;
   std::int64_t slice_propose() noexcept;
+  std::int64_t slice_vote() noexcept;
+  std::int64_t slice_look() noexcept;
   std::int64_t slice_shortlist() noexcept;
   std::int64_t slice_settle() noexcept;
   [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
+  void fill_shortlist() noexcept;
   void try_pose(const RigidTransform& pose) noexcept;
   void judge(PoseCandidate& candidate, std::size_t count, double floor) const noexcept;
   void decide() noexcept;
@@ -114,8 +131,9 @@ class FrameDetector {
   std::span<Descriptor> descriptors_;
   std::span<LocalFrame> frames_;
   std::span<Match> matches_;
-  std::span<Proposal> proposals_;
-  PoseCandidates finalists_;  // poses that are refined in full
+  std::span<Proposal> proposals_;  // of this round
+  PoseVotes votes_;                // on the proposals of all rounds
+  PoseCandidates finalists_;       // poses that are refined in full
 
   DetectState state_ = DetectState::idle;
   Phase phase_ = Phase::normals;
@@ -130,6 +148,10 @@ class FrameDetector {
   std::size_t key_count_ = 0;  // of this round
   std::size_t proposal_count_ = 0;
   std::size_t shortlist_count_ = 0;
+  std::size_t voted_count_ = 0;
+  std::array<std::uint32_t, kVoted> voted_;  // the best-voted poses
+  std::array<Proposal, kVoted> looks_;       // a quick look at each; scene: its place in voted_
+  std::array<RigidTransform, kShortlist> shortlist_;
   Detection best_;
 };
 

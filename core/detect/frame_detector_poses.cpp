@@ -1,5 +1,6 @@
 // The later stages of the search in a picture: poses proposed by single matches, judged, refined, decided on.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/detect/frame_detector.hpp"
@@ -9,15 +10,17 @@ namespace pliant {
 
 namespace {
 
-constexpr std::size_t kQuickPoints = 64;       // first look at a proposal
+constexpr std::size_t kQuickPoints = 64;  // first look at a proposal
+constexpr std::size_t kLookPoints = 128;  // look at what has votes; of thin limbs, few of these are in sight
 constexpr std::size_t kCloseLookPoints = 200;  // second look
 constexpr std::size_t kAlignPoints = 400;      // full refinement
 constexpr double kPlainWeight =
     0.3;  // of agreeing with a wall, at the first look: any pose can sink into one
 
 // What scores so low that clutter reaches it must have the descriptors on its side: of the keypoints that lie
-// on the object, so many have their best match near the right place. By chance about one in a hundred has.
-constexpr double kLeastSupport = 0.08;
+// on the object, so many have their best match near the right place. By chance about one in a hundred has, on
+// a deformed real object one in twenty.
+constexpr double kLeastSupport = 0.04;
 constexpr std::size_t kFewestSupporters = 4;
 
 Vector3 to_vector(const Point3f& p) noexcept {
@@ -45,22 +48,70 @@ std::int64_t FrameDetector::slice_propose() noexcept {
   const std::size_t last = std::min(cursor_ + kBatch, proposal_count_);
   for (; cursor_ < last; ++cursor_) {
     Proposal& p = proposals_[cursor_];
+    const RigidTransform pose = pose_of(p);
     p.score = static_cast<float>(
-        pose_evidence(model_, snapshot_, pose_of(p), kQuickPoints, coarse_, widest_, kPlainWeight).score());
+        pose_evidence(model_, snapshot_, pose, kQuickPoints, coarse_, widest_, kPlainWeight).score());
+    votes_.add(pose, round_ * settings_.keypoints + p.scene);
   }
   if (cursor_ >= proposal_count_) {
-    shortlist_count_ = std::min(kShortlist, proposal_count_);
-    std::partial_sort(proposals_.begin(), proposals_.begin() + static_cast<std::ptrdiff_t>(shortlist_count_),
-                      proposals_.begin() + static_cast<std::ptrdiff_t>(proposal_count_),
-                      [](const Proposal& a, const Proposal& b) {
-                        if (a.score != b.score) return a.score > b.score;
-                        return a.scene != b.scene ? a.scene < b.scene : a.model < b.model;
-                      });
+    votes_.index();
+    phase_ = Phase::vote;
+    cursor_ = 0;
+  }
+  return static_cast<std::int64_t>(kBatch) * 8;
+}
+
+std::int64_t FrameDetector::slice_vote() noexcept {
+  constexpr std::size_t kBatch = 512;
+  const std::size_t first = votes_.size() - proposal_count_ + cursor_;
+  votes_.count_votes(first, std::min(first + kBatch, votes_.size()));
+  cursor_ += kBatch;
+  if (cursor_ >= proposal_count_) {
+    voted_count_ = votes_.best(voted_);
+    phase_ = Phase::look;
+    cursor_ = 0;
+  }
+  return kBatch;
+}
+
+std::int64_t FrameDetector::slice_look() noexcept {
+  // Poses by local frames are too far off to judge: they are brought a little nearer first.
+  constexpr std::size_t kBatch = 32;
+  const std::size_t last = std::min(cursor_ + kBatch, voted_count_);
+  for (; cursor_ < last; ++cursor_) {
+    RigidTransform pose = votes_.mean_pose(voted_[cursor_]);
+    refine_pose(model_, snapshot_, kLookPoints, 2 * coarse_, fine_, 4, pose);
+    looks_[cursor_].scene = static_cast<std::uint16_t>(cursor_);
+    looks_[cursor_].model = 0;
+    looks_[cursor_].score = static_cast<float>(
+        pose_evidence(model_, snapshot_, pose, kLookPoints, coarse_, widest_, kPlainWeight).score());
+  }
+  if (cursor_ >= voted_count_) {
+    fill_shortlist();
     phase_ = Phase::shortlist;
     cursor_ = 0;
     if (hinted_ && round_ == 0) try_pose(hint_);
   }
-  return static_cast<std::int64_t>(kBatch) * 8;
+  return kBatch * 35;
+}
+
+void FrameDetector::fill_shortlist() noexcept {
+  const auto put_best_first = [](std::span<Proposal> all, std::size_t count) {
+    std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end(),
+                      [](const Proposal& a, const Proposal& b) {
+                        if (a.score != b.score) return a.score > b.score;
+                        return a.scene != b.scene ? a.scene < b.scene : a.model < b.model;
+                      });
+  };
+  shortlist_count_ = std::min(kByVotes, voted_count_);
+  put_best_first(std::span(looks_).first(voted_count_), shortlist_count_);
+  for (std::size_t k = 0; k < shortlist_count_; ++k) {
+    shortlist_[k] = votes_.mean_pose(voted_[looks_[k].scene]);
+    votes_.spend(voted_[looks_[k].scene]);
+  }
+  const std::size_t others = std::min(kShortlist - shortlist_count_, proposal_count_);
+  put_best_first(proposals_.first(proposal_count_), others);
+  for (std::size_t k = 0; k < others; ++k) shortlist_[shortlist_count_++] = pose_of(proposals_[k]);
 }
 
 void FrameDetector::judge(PoseCandidate& candidate, std::size_t count, double floor) const noexcept {
@@ -83,7 +134,7 @@ void FrameDetector::try_pose(const RigidTransform& pose) noexcept {
 
 std::int64_t FrameDetector::slice_shortlist() noexcept {
   if (cursor_ < shortlist_count_) {
-    try_pose(pose_of(proposals_[cursor_++]));
+    try_pose(shortlist_[cursor_++]);
   }
   if (cursor_ >= shortlist_count_) {
     phase_ = Phase::settle;

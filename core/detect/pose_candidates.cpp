@@ -11,13 +11,18 @@ namespace {
 // earlier.
 constexpr double kCertain = 0.45;
 constexpr double kConvincing = 0.28;
-constexpr double kLastResort = 0.2;
-constexpr double kRivalShare = 0.4;
+constexpr double kLastResort = 0.22;
+constexpr double kRivalShare = 0.3;
 // Something round lies within the tolerance of much of another round thing, less closely than the object
 // itself would (PoseEvidence::unexplained), and in several attitudes. In pictures of clutter the sum of both
 // shares is 0.35 to 1; in those of objects, also deformed and real ones, up to 0.28.
 constexpr double kMostDoubt = 0.3;
 constexpr double kBeyondDoubt = 0.5;
+// Scores that clutter reaches too are believed of a fit that is close, and clearly better than in any other
+// attitude: deformed real objects leave 0.2 unexplained and reach a third elsewhere, clutter more of the one
+// or the other.
+constexpr double kLittleUnexplained = 0.22;
+constexpr double kLittleTwin = 0.35;
 constexpr double kMostOutside =
     0.4;  // of the facing points; with more out of the picture, only certainty counts
 
@@ -94,7 +99,9 @@ Verdict verdict_on(const Detection& detection) noexcept {
   Verdict verdict;
   verdict.convincing =
       itself && (detection.score >= kCertain || (detection.score >= kConvincing && lone && in_sight));
-  verdict.last_resort = itself && lone && in_sight && detection.score >= kLastResort;
+  verdict.last_resort = detection.evidence.unexplained() <= kLittleUnexplained &&
+                        detection.twin <= kLittleTwin * detection.score && lone && in_sight &&
+                        detection.score >= kLastResort;
   return verdict;
 }
 

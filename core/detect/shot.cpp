@@ -44,7 +44,8 @@ bool ShotDescriber::find_frame(LocalFrame& frame, float (&axes)[9], float* lean)
   const Support& s = support_;
   // z: the mean normal of the inner third, where the surface is most like the keypoint's own. x: where the
   // normals of the support lean to in the plane across z, farther ones counting more: unlike the axes of the
-  // covariance it has a sign, and it does not depend on how evenly the points lie.
+  // covariance it has a sign, and it does not depend on how evenly the points lie. What is turned away from
+  // z does not count: a picture that shows the keypoint does not show it.
   float lanes_x[kLanes] = {}, lanes_y[kLanes] = {}, lanes_z[kLanes] = {}, lanes_w[kLanes] = {};
   for (std::size_t k = 0; k < s.count; k += kLanes)
     for (std::size_t l = 0; l < kLanes; ++l) {
@@ -65,7 +66,9 @@ bool ShotDescriber::find_frame(LocalFrame& frame, float (&axes)[9], float* lean)
       const float x = s.x[k + l], y = s.y[k + l], up = s.z[k + l];
       const float height = zx * x + zy * y + zz * up;
       const float across = x * x + y * y + up * up - height * height;
-      const float w = (1 - s.distance[k + l]) * std::sqrt(across > 0 ? across : 0);
+      const float facing = zx * s.nx[k + l] + zy * s.ny[k + l] + zz * s.nz[k + l];
+      const float w =
+          (facing > 0 ? facing : 0) * (1 - s.distance[k + l]) * std::sqrt(across > 0 ? across : 0);
       lanes_x[l] += w * s.nx[k + l];
       lanes_y[l] += w * s.ny[k + l];
       lanes_z[l] += w * s.nz[k + l];

@@ -67,6 +67,9 @@ void ShotBins::place(const ShotPoints& points) noexcept {
     bin = bin > kCosineBins - 2 ? kCosineBins - 2 : bin;
     cosine_bin[k] = bin;
     cosine_part[k] = cosine_at - static_cast<float>(bin);
+    // What is turned away from the keypoint is not seen together with it: the far side of a limb, which a
+    // model knows and a picture does not.
+    weight[k] = clamp01(cosine);
   }
 #pragma GCC ivdep
   for (std::size_t k = 0; k < count; ++k) {
@@ -88,7 +91,7 @@ void ShotBins::place(const ShotPoints& points) noexcept {
     const float d = distance[k] > kAtCentre ? distance[k] : kAtCentre;
     up[k] = clamp01(0.5F + 0.70710678F * lz / d);
     outer[k] = clamp01(2 * distance[k] - 0.5F);
-    weight[k] = distance[k] < kAtCentre ? 0.0F : 1.0F;
+    weight[k] = distance[k] < kAtCentre ? 0.0F : weight[k];
   }
 }
 

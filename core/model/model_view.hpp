@@ -36,7 +36,7 @@ struct LocalFrame {
 struct ModelHeader {
   static constexpr std::array<char, 8> kMagic = {'P', 'L', 'I', 'A', 'N', 'T', 'M', '\n'};
   static constexpr std::uint32_t kByteOrder = 0x01020304;
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;  ///< 2: descriptors do without what faces away
   enum Flags : std::uint32_t {
     kCharacterisable = 1,  ///< its shape tells where it is; not so for a sphere or a plane
     kClosedSurface = 2,    ///< built from a mesh without a border

@@ -25,13 +25,13 @@ inline constexpr std::size_t kFinePoints = 2500;  ///< model points of a last re
 [[nodiscard]] CloudTarget working_target(const RegistrationState& s) noexcept;
 [[nodiscard]] CloudTarget base_target(const RegistrationState& s) noexcept;
 
-/// Matches whose model point wanted(index) and whose scene point no instance or region explains.
+/// Matches that are wanted(model index, scene point) and whose scene point no instance or region explains.
 template <typename Wanted>
 std::size_t collect_matches(RegistrationState& s, Wanted&& wanted) noexcept {
   const auto near = static_cast<float>(s.spacing);
   std::size_t count = 0;
   for (std::size_t k = 0; k < s.posed_count; ++k) {
-    if (!wanted(s.matches[k].model)) continue;
+    if (!wanted(s.matches[k].model, s.posed[k].scene)) continue;
     float square = 0;
     if (s.base_grid.nearest_if(s.posed[k].scene, near, square,
                                [&](std::uint32_t i) { return s.base_taken[i] != 0; }) != PointGrid::kNone)

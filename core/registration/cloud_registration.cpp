@@ -52,6 +52,7 @@ const char* CloudRegistration::start(const ModelView& model, std::size_t scene_p
   state->matcher.start(state->settings.kernels);
   state->support = model.header().support_radius;
   if (!state->model_index.build(model.positions(), 1.5 * model.spacing())) return "the model has no spacing";
+  state->warp.start(state->model);
   for (std::size_t i = 0; i < model.size(); ++i) state->prefix[i] = static_cast<std::uint16_t>(i);
   return nullptr;
 }
@@ -63,7 +64,7 @@ void CloudRegistration::done(RegistrationStage stage, bool model_side) const noe
 bool CloudRegistration::inspect(std::span<const Point3f> scene) noexcept {
   RegistrationState& s = *state_;
   s.result = RegistrationResult();
-  s.key_count = 0;
+  s.key_count = s.posed_count = 0;
   s.result.outcome = examine(s, scene);
   if (s.result.outcome != RegistrationOutcome::found) return false;
   thin_scene(s, scene);
@@ -211,6 +212,7 @@ const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& fr
   s.result = RegistrationResult();
   thin_scene(s, points);
   prepare();
+  s.posed_count = 0;  // pictures are not matched by groups
   s.key_count = keys;
   for (std::size_t k = 0; k < count; ++k) complete(k, seen[k].pose, seen[k].score);
   return finish(count);

@@ -12,10 +12,13 @@
 #include "core/geometry/rigid_transform.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/model/model_view.hpp"
+#include "core/registration/work_sharer.hpp"
 #include "core/track_result.hpp"
 #include "core/track_settings.hpp"
 
 namespace pliant {
+
+inline constexpr std::uint32_t kMostWorkers = 16;
 
 struct RegistrationSettings {
   std::uint32_t model_keypoints = 2048;  ///< the first so many model points [32, 16384]; descriptors beyond
@@ -31,12 +34,17 @@ struct RegistrationSettings {
                                ///< scene is in sight from there, else they are made consistent by themselves
   Vector3 viewpoint = Vector3::Zero();  ///< where the sensor stood, scene frame, metres
   Kernels kernels = Kernels::automatic;
+  std::uint32_t workers =
+      1;              ///< pieces that descriptors and matches of a cloud are cut into [1, kMostWorkers]
+  WorkSharer sharer;  ///< who works on them; the result is the same for any number of workers
   // Parts that can be switched off to see what they are worth.
   bool consistent_normals = true;  ///< off: every normal is turned to the viewpoint or the origin
   bool frame_hypotheses = true;    ///< off: poses come from grouping by pairwise distances alone
   bool free_space = true;          ///< off: depth pictures are judged by agreement alone
   bool grouping = true;            ///< off: poses come from single local frames alone
-  bool refinement = true;          ///< off: poses stay as the matches give them
+  bool constraints = true;         ///< off: a chain may tear the object apart at its joints
+  bool warp = true;        ///< off: deformed points lie where their match lies, the paper's radius search
+  bool refinement = true;  ///< off: poses stay as the matches give them
 };
 
 /// What a registration found out.

@@ -5,11 +5,13 @@
 
 #include "core/detect/fast_transform.hpp"
 #include "core/registration/chain_measures.hpp"
+#include "core/registration/cloud_warp.hpp"
 
 namespace pliant {
 
 void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResult& instance) noexcept {
   const std::size_t n = s.model.size();
+  if (s.settings.warp) warp_cloud(s, CloudWarpSettings(), buffers);
   // Every point starts where the nearest region (along the model's surface) takes it.
   for (std::size_t i = 0; i < n; ++i)
     s.proposal[i] =
@@ -31,7 +33,7 @@ void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResul
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t region = s.proposal[i] == limits::kMaxRegions ? 0 : s.proposal[i];
     const FastTransform fast(buffers.regions[region].transform);
-    buffers.positions[i] = fast.point(s.model.positions()[i]);
+    if (!s.settings.warp) buffers.positions[i] = fast.point(s.model.positions()[i]);
     buffers.matches[i] = -1;
     if (buffers.labels[i] >= 0) {
       buffers.matches[i] = s.gap_nearest[i] == PointGrid::kNone
@@ -94,7 +96,8 @@ void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResul
     const Point3f& p = buffers.positions[i];
     buffers.residuals[i] =
         std::sqrt((q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y) + (q.z - p.z) * (q.z - p.z));
-    buffers.positions[i] = q;
+    // The warp knows better than a noisy point beside it where this point went.
+    if (!s.settings.warp) buffers.positions[i] = q;
     buffers.matches[i] = static_cast<std::int32_t>(s.base_index[s.gap_nearest[i]]);
   }
   // What the deformed points were matched with belongs to this instance too.

@@ -26,7 +26,7 @@ void lay_out(Workspace& workspace, const RegistrationState& s, const Intrinsics&
              FrameDetector& detector) noexcept {
   DetectSettings settings;
   // There is no next frame to try.
-  settings.rounds = 4;
+  settings.rounds = 5;
   settings.model_keypoints = 2048;
   settings.exhaustive = s.settings.max_instances > 1;
   surface.lay_out(workspace, camera);

@@ -86,7 +86,7 @@ bool has_twin(const RegistrationState& s, const Trial& best) noexcept {
 }  // namespace
 
 double find_instance(RegistrationState& s, RigidTransform& pose) noexcept {
-  const std::size_t matches = collect_matches(s, [](std::size_t) { return true; });
+  const std::size_t matches = collect_matches(s, [](std::size_t, const Point3f&) { return true; });
   const std::span<const PosedMatch> left = s.posed_left.first(matches);
   Trial best;
   if (s.settings.grouping) {

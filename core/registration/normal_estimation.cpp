@@ -41,43 +41,74 @@ void flip(Normal16& n) noexcept {
 
 }  // namespace
 
+namespace {
+
+/// The spread of the points within `reach` of `c`, in units of reach squared.
+struct Spread {
+  SymmetricEigen eigen;
+  std::size_t count = 0;
+  /// Spans a plane, not only a line.
+  [[nodiscard]] bool tells() const noexcept { return count >= 3 && eigen.values(1) > 1e-4 * eigen.values(2); }
+};
+
+Spread spread_within(const PointGrid& grid, const Point3f& c, float reach) noexcept {
+  float sx = 0, sy = 0, sz = 0, sxx = 0, sxy = 0, sxz = 0, syy = 0, syz = 0, szz = 0;
+  const float unit = 1 / reach;
+  Spread spread;
+  spread.count = grid.visit_within(c, reach, kMostNeighbours, [&](std::uint32_t, const Point3f& p, float) {
+    const float x = (p.x - c.x) * unit, y = (p.y - c.y) * unit, z = (p.z - c.z) * unit;
+    sx += x;
+    sy += y;
+    sz += z;
+    sxx += x * x;
+    sxy += x * y;
+    sxz += x * z;
+    syy += y * y;
+    syz += y * z;
+    szz += z * z;
+  });
+  if (spread.count < 3) return spread;
+  const double k = 1.0 / static_cast<double>(spread.count);
+  const double mx = static_cast<double>(sx) * k, my = static_cast<double>(sy) * k,
+               mz = static_cast<double>(sz) * k;
+  Matrix3 m;
+  m(0, 0) = static_cast<double>(sxx) * k - mx * mx;
+  m(0, 1) = m(1, 0) = static_cast<double>(sxy) * k - mx * my;
+  m(0, 2) = m(2, 0) = static_cast<double>(sxz) * k - mx * mz;
+  m(1, 1) = static_cast<double>(syy) * k - my * my;
+  m(1, 2) = m(2, 1) = static_cast<double>(syz) * k - my * mz;
+  m(2, 2) = static_cast<double>(szz) * k - mz * mz;
+  spread.eigen = symmetric_eigen(m);
+  return spread;
+}
+
+// Where the points leave their plane by more than this share of their spread, they may be bent.
+constexpr double kPerhapsBent = 0.02;
+constexpr float kNarrow = 0.55F;
+// Noise leaves the plane by as much however near the points are, a bend by the fourth power of how near: half
+// way between.
+constexpr double kBent = 0.4;
+
+}  // namespace
+
 void estimate_normals(const PointGrid& grid, std::span<const Point3f> at, double radius,
                       std::span<Normal16> normals) noexcept {
   for (std::size_t i = 0; i < at.size(); ++i) {
     normals[i] = Normal16();
     for (int attempt = 0; attempt < 3; ++attempt) {
-      float sx = 0, sy = 0, sz = 0, sxx = 0, sxy = 0, sxz = 0, syy = 0, syz = 0, szz = 0;
-      const Point3f c = at[i];
       const auto reach = static_cast<float>(radius * (1 << attempt));
-      const float unit = 1 / reach;
-      const std::size_t n =
-          grid.visit_within(c, reach, kMostNeighbours, [&](std::uint32_t, const Point3f& p, float) {
-            const float x = (p.x - c.x) * unit, y = (p.y - c.y) * unit, z = (p.z - c.z) * unit;
-            sx += x;
-            sy += y;
-            sz += z;
-            sxx += x * x;
-            sxy += x * y;
-            sxz += x * z;
-            syy += y * y;
-            syz += y * z;
-            szz += z * z;
-          });
-      if (n < kFewNeighbours && attempt < 2) continue;
-      if (n < 3) break;
-      const double k = 1.0 / static_cast<double>(n);
-      const double mx = static_cast<double>(sx) * k, my = static_cast<double>(sy) * k,
-                   mz = static_cast<double>(sz) * k;
-      Matrix3 m;
-      m(0, 0) = static_cast<double>(sxx) * k - mx * mx;
-      m(0, 1) = m(1, 0) = static_cast<double>(sxy) * k - mx * my;
-      m(0, 2) = m(2, 0) = static_cast<double>(sxz) * k - mx * mz;
-      m(1, 1) = static_cast<double>(syy) * k - my * my;
-      m(1, 2) = m(2, 1) = static_cast<double>(syz) * k - my * mz;
-      m(2, 2) = static_cast<double>(szz) * k - mz * mz;
-      const SymmetricEigen eigen = symmetric_eigen(m);
-      if (!(eigen.values(1) > 1e-4 * eigen.values(2))) continue;  // on a line
-      const Vector3 normal = eigen.vectors.col(0);
+      Spread spread = spread_within(grid, at[i], reach);
+      if (spread.count < kFewNeighbours && attempt < 2) continue;
+      if (spread.count < 3) break;
+      if (!spread.tells()) continue;  // on a line
+      // A limb is thinner than the reach that averages noise away on a broad surface.
+      if (attempt == 0 && spread.eigen.values(0) > kPerhapsBent * spread.eigen.values(2)) {
+        const Spread narrow = spread_within(grid, at[i], kNarrow * reach);
+        if (narrow.count >= kFewNeighbours && narrow.tells() &&
+            static_cast<double>(kNarrow * kNarrow) * narrow.eigen.values(0) < kBent * spread.eigen.values(0))
+          spread = narrow;
+      }
+      const Vector3 normal = spread.eigen.vectors.col(0);
       normals[i] = {to_q14(normal.x()), to_q14(normal.y()), to_q14(normal.z()), 0};
       break;
     }

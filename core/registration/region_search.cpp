@@ -5,13 +5,18 @@
 #include <cmath>
 
 #include "core/registration/chain_measures.hpp"
+#include "core/registration/surface_joints.hpp"
 
 namespace pliant {
 
 namespace {
 
-constexpr double kLittleTurn = 0.87;  // cosine of 30°
-constexpr float kDoubtful = 0.3F;     // of what a point may be off its region: more than chance
+constexpr double kLittleTurn = 0.87;           // cosine of 30°
+constexpr std::uint32_t kJoined = 0x3FFFFFFF;  // in place of a piece's size: large, and looked at
+constexpr std::uint32_t kFewMatches = 20;      // too few to tell a share from
+constexpr std::uint32_t kFewestAgree = 3;
+constexpr double kAgreeShare = 0.035;
+constexpr float kDoubtful = 0.3F;  // of what a point may be off its region: more than chance
 
 /// Open model points, the first `most` in the model's order (evenly spread), to s.part.
 std::size_t open_part(RegistrationState& s, std::size_t most) noexcept {
@@ -37,23 +42,35 @@ struct Gain {
   std::uint32_t piece = 0;
 };
 
-/// What a pose explains of the open points: the largest connected piece, which must hang on the base:
-/// somewhere the two transforms agree within a sixth of the radius.
-Gain gain_of(RegistrationState& s, const RigidTransform& pose, const RigidTransform& base,
-             double noise) noexcept {
+/// Whether the descriptors bear a pose of the piece `piece` of s.islands out: of its matches, it explains
+/// more than chance would. A piece can slide along something of a like shape, and fits it closely, but its
+/// matches say otherwise: of a false pose's, up to 2 % are explained, of a right one's 5 % and more.
+bool borne_out(const RegistrationState& s, std::uint32_t piece, const RigidTransform& pose) noexcept {
+  const double limit = 2 * match_tolerance(s);
+  std::uint32_t matches = 0, agree = 0;
+  for (std::size_t k = 0; k < s.posed_count; ++k) {
+    if (s.islands.piece()[s.matches[k].model] != piece) continue;
+    ++matches;
+    const Vector3 gap = pose * to_vector(s.posed[k].model) - to_vector(s.posed[k].scene);
+    agree += gap.squaredNorm() < limit * limit ? 1U : 0U;
+  }
+  return matches < kFewMatches ||
+         (agree >= kFewestAgree && static_cast<double>(agree) >= kAgreeShare * matches);
+}
+
+/// What a pose explains of the open points: the largest connected piece, which must stay joined to what the
+/// regions so far explain.
+Gain gain_of(RegistrationState& s, const InstanceBuffers& buffers, std::span<const RigidTransform> poses,
+             const RigidTransform& pose, double noise) noexcept {
   measure(s, pose, noise, true);
   for (std::size_t i = 0; i < s.model.size(); ++i) s.off[i] = s.open[i] != 0 ? off_surface(s, i, noise) : -1;
   Gain gain;
   gain.piece = s.islands.pieces(
       s.model, [&](std::size_t i) { return on_surface(s.off[i]); }, gain.points);
-  double least = 1e300;
-  for (std::size_t i = 0; i < s.model.size(); ++i) {
-    if (s.islands.piece()[i] != gain.piece || gain.piece == 0) continue;
-    const Vector3 p = to_vector(s.model.positions()[i]);
-    const Vector3 apart = pose * p - base * p;
-    least = std::min(least, apart.dot(apart));
-  }
-  if (least > s.model.radius() * s.model.radius() / 36) gain.points = 0;
+  if (gain.points > 0 && !borne_out(s, gain.piece, pose)) gain.points = 0;
+  if (s.settings.constraints && gain.points > 0 &&
+      joint_gap(s, buffers.labels, poses, gain.piece, pose) > largest_joint_gap(s))
+    gain.points = 0;
   return gain;
 }
 
@@ -87,7 +104,11 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
   const RigidTransform& base = poses[0];
   const auto least = static_cast<std::uint32_t>(std::max(40.0, 0.02 * static_cast<double>(s.model.size())));
   std::array<MatchGroup, 4> groups;
-  const std::size_t matches = collect_matches(s, [&](std::size_t i) { return s.open[i] != 0; });
+  if (s.settings.constraints) measure_reach(s, buffers.labels);
+  const std::size_t matches = collect_matches(s, [&](std::size_t i, const Point3f& scene) {
+    return s.open[i] != 0 &&
+           (!s.settings.constraints || within_reach(s, buffers.labels, poses, i, to_vector(scene)));
+  });
   GroupingSettings settings;
   settings.tolerance = match_tolerance(s);
   settings.use_frames = s.settings.frame_hypotheses;
@@ -105,7 +126,7 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
                        trial) == 0)
       continue;
     refine(s, s.part.first(part), noise, trial);
-    const Gain gain = gain_of(s, trial, base, noise);
+    const Gain gain = gain_of(s, buffers, poses, trial, noise);
     if (gain.points > best.points) {
       best = gain;
       pose = trial;
@@ -119,13 +140,13 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
   const std::uint32_t least_open = little ? least / 2 : least;
   if (best.points < least_open) return false;
   // Once more on the piece alone.
-  const Gain gain = gain_of(s, pose, base, noise);
+  const Gain gain = gain_of(s, buffers, poses, pose, noise);
   if (gain.points < least_open) return false;
   std::size_t part = 0;
   for (std::size_t i = 0; i < s.model.size() && part < kFinePoints; ++i)
     if (s.islands.piece()[i] == gain.piece) s.part[part++] = static_cast<std::uint16_t>(i);
   refine(s, s.part.first(part), noise, pose);
-  if (gain_of(s, pose, base, noise).points < least_open) return false;
+  if (gain_of(s, buffers, poses, pose, noise).points < least_open) return false;
   const std::uint32_t size = explained_better(s, buffers, poses, noise, pose);
   if (size < least) return false;
   // Sizes of the pieces; two legs may hang together through the hip alone, which bends.
@@ -135,6 +156,11 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
   for (std::size_t i = 0; i < s.model.size(); ++i) {
     const std::uint32_t piece = s.islands.piece()[i];
     s.proposal[i] = piece != 0 && 4 * s.gap_nearest[piece - 1] >= least ? 1 : 0;
+    if (s.proposal[i] == 0 || !s.settings.constraints || s.gap_nearest[piece - 1] == kJoined) continue;
+    // Each piece is asked for once.
+    const bool torn = joint_gap(s, buffers.labels, poses, piece, pose) > largest_joint_gap(s);
+    s.gap_nearest[piece - 1] = torn ? 0 : kJoined;
+    s.proposal[i] = torn ? 0 : 1;
   }
   return true;
 }

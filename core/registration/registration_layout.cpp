@@ -25,6 +25,7 @@ RegistrationSettings clamped(const RegistrationSettings& given, const ModelView&
   s.max_regions = std::clamp(s.max_regions, 1U, static_cast<std::uint32_t>(limits::kMaxRegions));
   s.max_instances =
       std::clamp(s.max_instances, 1U, static_cast<std::uint32_t>(CloudRegistration::kMostInstances));
+  s.workers = std::clamp(s.workers, 1U, kMostWorkers);
   s.wanted_share = std::clamp(s.wanted_share, 0.1, 1.0);
   return s;
 }
@@ -59,9 +60,14 @@ void lay_out(Workspace& workspace, const ModelView& model, std::size_t scene_poi
   s.own_descriptors = workspace.take<Descriptor>(own);
   s.own_frames = workspace.take<LocalFrame>(own);
   s.model_grid.lay_out(workspace, own > 0 ? m : 0);
-  s.describer.lay_out(workspace);
+  s.key_leans = workspace.take<float>(keys);
   s.matcher.lay_out(workspace, s.settings.model_keypoints);
+  for (std::uint32_t worker = 0; worker < s.settings.workers; ++worker) {
+    s.describers[worker].lay_out(workspace);
+    if (worker > 0) s.helpers[worker].lay_out_helper(workspace, s.settings.model_keypoints);
+  }
   s.grouping.lay_out(workspace, keys);
+  s.warp.lay_out(workspace, m, n);
   s.islands.lay_out(workspace, m);
   s.readings.lay_out(workspace, m);
   s.model_index.lay_out(workspace, m);
@@ -71,6 +77,8 @@ void lay_out(Workspace& workspace, const ModelView& model, std::size_t scene_poi
   s.off = workspace.take<float>(m);
   s.gap_nearest = workspace.take<std::uint32_t>(m);
   s.proposal = workspace.take<std::uint32_t>(m);
+  s.along = workspace.take<float>(m);
+  s.anchor = workspace.take<std::uint16_t>(m);
   s.claimed = workspace.take<std::uint32_t>(n);
   s.picture = workspace.take<std::uint16_t>(n);
   s.picture_points = workspace.take<Point3f>(n);

@@ -15,6 +15,7 @@
 #include "core/registration/cloud_labels.hpp"
 #include "core/registration/cloud_registration.hpp"
 #include "core/registration/normal_estimation.hpp"
+#include "core/registration/warp_room.hpp"
 
 namespace pliant {
 
@@ -67,11 +68,14 @@ struct RegistrationState {
   PointGrid model_grid;   ///< over the model's points, for descriptors
   PointGrid model_index;  ///< the same in cells of the spacing, for nearest points
 
-  ShotDescriber describer;
+  std::array<ShotDescriber, kMostWorkers> describers;  ///< one a worker
   DescriptorMatcher matcher;
+  std::array<DescriptorMatcher, kMostWorkers> helpers;  ///< the matchers of workers but the first
+  std::span<float> key_leans;
   Grouping grouping;
   IslandFilter islands;
   SurfaceReadings readings;
+  WarpRoom warp;
 
   std::span<std::byte> depth_block;   ///< for the search in a picture
   std::span<std::uint16_t> picture;   ///< a cloud drawn as its viewpoint sees it
@@ -84,6 +88,8 @@ struct RegistrationState {
   std::span<float> off;             ///< how far a point is off the region under test, negative: nothing seen
   std::span<std::uint32_t> gap_nearest;
   std::span<std::uint32_t> proposal;  ///< base point proposed to a deformed point
+  std::span<float> along;             ///< distance along the surface to the nearest explained point, metres
+  std::span<std::uint16_t> anchor;    ///< that point
   std::span<std::uint32_t> claimed;   ///< per base point: deformed model point + 1
 
   std::array<InstanceBuffers, CloudRegistration::kMostInstances> buffers;

@@ -46,7 +46,7 @@ void describe_model(RegistrationState& s) noexcept {
   const OrientedPoints cloud = {s.model.positions(), s.model.normals()};
   for (std::size_t i = 0; i < s.model_key_count; ++i)
     static_cast<void>(
-        s.describer.describe(cloud, s.model_grid, i, s.support, s.own_descriptors[i], s.own_frames[i]));
+        s.describers[0].describe(cloud, s.model_grid, i, s.support, s.own_descriptors[i], s.own_frames[i]));
   s.model_descriptors = s.own_descriptors.first(s.model_key_count);
   s.model_frames = s.own_frames.first(s.model_key_count);
   s.matcher.prepare(s.model_descriptors);
@@ -116,24 +116,52 @@ void sample_keypoints(RegistrationState& s, std::uint32_t wanted) noexcept {
   for (std::size_t k = 0; k < s.key_count; ++k) s.keys[k] = s.base[s.kept[k]];
 }
 
+namespace {
+
+/// Part `piece` of `count` things shared among the workers, rounded to groups of `group`.
+struct Share {
+  std::size_t first, last;
+};
+Share share_of(std::size_t piece, std::size_t workers, std::size_t count, std::size_t group) noexcept {
+  const std::size_t each = ((count + workers - 1) / workers + group - 1) / group * group;
+  const std::size_t first = std::min(piece * each, count);
+  return {first, std::min(first + each, count)};
+}
+
+}  // namespace
+
 void describe_keypoints(RegistrationState& s) noexcept {
   const OrientedPoints cloud = {s.working.first(s.working_count), s.working_normals.first(s.working_count)};
+  const std::size_t workers = s.settings.workers;
+  s.settings.sharer.share(workers, [&](std::size_t worker) {
+    const Share share = share_of(worker, workers, s.key_count, 1);
+    for (std::size_t k = share.first; k < share.last; ++k)
+      if (!s.describers[worker].describe_at(cloud, s.working_grid, s.keys[k], s.support, s.key_descriptors[k],
+                                            s.key_frames[k], &s.key_leans[k]))
+        s.key_leans[k] = 0;
+  });
   std::size_t count = 0;
   for (std::size_t k = 0; k < s.key_count; ++k) {
-    float lean = 0;
-    if (!s.describer.describe_at(cloud, s.working_grid, s.keys[k], s.support, s.key_descriptors[count],
-                                 s.key_frames[count], &lean) ||
-        static_cast<double>(lean) < kLeastLean)
-      continue;
-    s.keys[count++] = s.keys[k];
+    if (static_cast<double>(s.key_leans[k]) < kLeastLean) continue;
+    s.keys[count] = s.keys[k];
+    s.key_descriptors[count] = s.key_descriptors[k];
+    s.key_frames[count++] = s.key_frames[k];
   }
   s.posed_count = count;
 }
 
 void match_keypoints(RegistrationState& s) noexcept {
-  s.matcher.match(s.key_descriptors.first(s.posed_count), 1, s.matches);
+  const std::size_t workers = s.settings.workers;
+  for (std::size_t worker = 1; worker < workers; ++worker) s.helpers[worker].join(s.matcher);
+  s.settings.sharer.share(workers, [&](std::size_t worker) {
+    const Share share = share_of(worker, workers, s.posed_count, kBoundQueries);
+    DescriptorMatcher& matcher = worker == 0 ? s.matcher : s.helpers[worker];
+    matcher.match(s.key_descriptors.subspan(share.first, share.last - share.first), 1,
+                  s.matches.subspan(share.first));
+  });
   for (std::size_t k = 0; k < s.posed_count; ++k) {
-    const Match& m = s.matches[k];
+    Match& m = s.matches[k];
+    m.scene = static_cast<std::uint16_t>(k);
     s.posed[k] = {s.model.positions()[m.model], s.keys[k], s.model_frames[m.model], s.key_frames[k], m.dot};
   }
 }

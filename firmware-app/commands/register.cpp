@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <thread>
+#include <vector>
 
 #include "core/registration/cloud_registration.hpp"
 #include "drivers/geometry_files/points_ply.hpp"
@@ -25,7 +27,17 @@ struct RegisterOptions {
   std::vector<std::uint32_t> keypoints;
   int max_regions = 8, max_instances = 1, threads = 1;
   std::vector<double> viewpoint;
+  bool no_warp = false, no_constraints = false;
 };
+
+/// Threads that share work; none of them lasts longer than a task.
+void run_on_threads(void* /*context*/, std::size_t pieces, WorkSharer::Piece work, void* task) {
+  std::vector<std::thread> threads;
+  threads.reserve(pieces - 1);
+  for (std::size_t piece = 1; piece < pieces; ++piece) threads.emplace_back([=] { work(task, piece); });
+  work(task, 0);
+  for (std::thread& thread : threads) thread.join();
+}
 
 RegistrationSettings settings_of(const RegisterOptions& options) {
   RegistrationSettings settings;
@@ -38,6 +50,10 @@ RegistrationSettings settings_of(const RegisterOptions& options) {
   settings.has_viewpoint = options.viewpoint.size() == 3;
   if (settings.has_viewpoint)
     settings.viewpoint = Vector3(options.viewpoint[0], options.viewpoint[1], options.viewpoint[2]);
+  settings.warp = !options.no_warp;
+  settings.constraints = !options.no_constraints;
+  settings.workers = static_cast<std::uint32_t>(options.threads);
+  settings.sharer.run = &run_on_threads;
   return settings;
 }
 
@@ -144,9 +160,14 @@ void add_register(CLI::App& program, Work& work) {
       ->delimiter(',')
       ->expected(3)
       ->type_name("x,y,z");
-  app->add_option("--threads", options->threads, "Threads that share the work, 1 to 64")
-      ->check(CLI::Range(1, 64).description(""))
+  app->add_option("--threads", options->threads,
+                  "Threads that share descriptors and matches of a cloud, 1 to 16; the result is the same")
+      ->check(CLI::Range(1, static_cast<int>(kMostWorkers)).description(""))
       ->type_name("N");
+  app->add_flag("--no-warp", options->no_warp,
+                "Deformed points lie where the nearest free scene point lies, as in the paper");
+  app->add_flag("--no-constraints", options->no_constraints,
+                "A chain of regions may tear the object apart at its joints, as in the paper");
   app->callback([options, &work] { work = [options] { return register_scene(*options); }; });
 }
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Registers the shared cases with the program and prints their scores as a table.
 
     tests/accuracy/score_cases.py build/release/firmware-app/pliant [CASE...]

@@ -64,6 +64,19 @@ TEST_F(RegisterCommand, FindsTheModelInACloudOfItself) {
       EXPECT_NEAR(transform[r][c].get<double>(), r == c ? 1.0 : 0.0, 0.01) << r << c;
 }
 
+TEST_F(RegisterCommand, AnyNumberOfThreadsGivesTheSameBytes) {
+  prepare();
+  ASSERT_EQ(run_pliant({"model", "export", at("cushion.model"), "-o", at("scene.ply")}).code, 0);
+  for (const char* threads : {"1", "3", "16"})
+    ASSERT_EQ(run_pliant({"register", "--model", at("cushion.model"), "--scene", at("scene.ply"), "-o",
+                          at(std::string("result") + threads + ".ply"), "--keypoints", "500,600", "--threads",
+                          threads})
+                  .code,
+              0);
+  EXPECT_EQ(read_file(at("result1.ply")), read_file(at("result3.ply")));
+  EXPECT_EQ(read_file(at("result1.ply")), read_file(at("result16.ply")));
+}
+
 TEST_F(RegisterCommand, WhatIsNotThereIsNotFound) {
   prepare();
   write_file(at("result.ply"), "mine");
@@ -119,7 +132,7 @@ TEST_F(RegisterCommand, BadInputsAreRefused) {
                                       {"--max-instances", "0"},
                                       {"--keypoints", "10,20"},
                                       {"--viewpoint", "1,2"},
-                                      {"--threads", "0"}})
+                                      {"--threads", "17"}})
     expect_refused(run_pliant({"register", "--model", model, "--scene", picture, "-o", out, option, value}),
                    2, {option});
   EXPECT_FALSE(std::filesystem::exists(out));

@@ -84,8 +84,9 @@ Detection detection(double score, double rival, double twin, double close) {
 }
 
 TEST(Verdict, BelievesWhatStandsOutAndFits) {
-  EXPECT_TRUE(verdict_on(detection(0.7, 0.5, 0.6, 0.8)).convincing);    // beyond doubt
-  EXPECT_TRUE(verdict_on(detection(0.4, 0.1, -10, 0.8)).convincing);    // alone, one attitude
+  EXPECT_TRUE(verdict_on(detection(0.7, 0.5, 0.6, 0.8)).convincing);  // beyond doubt
+  EXPECT_TRUE(verdict_on(detection(0.4, 0.1, -10, 0.8)).convincing);  // alone, one attitude
+  EXPECT_FALSE(verdict_on(detection(0.31, 0.11, 0.03, 0.91)).convincing);
   EXPECT_FALSE(verdict_on(detection(0.4, 0.3, -10, 0.99)).convincing);  // another place is nearly as good
   EXPECT_FALSE(verdict_on(detection(0.47, 0, 0.4, 0.83)).convincing);   // any attitude fits: something round
   EXPECT_FALSE(verdict_on(detection(0.32, -10, 0.08, 0.8)).convincing);
@@ -93,7 +94,8 @@ TEST(Verdict, BelievesWhatStandsOutAndFits) {
 }
 
 TEST(Verdict, LastResortNeedsAClearFieldToo) {
-  EXPECT_TRUE(verdict_on(detection(0.25, -10, -0.1, 0.8)).last_resort);
+  EXPECT_TRUE(verdict_on(detection(0.25, -10, -0.1, 0.85)).last_resort);
+  EXPECT_FALSE(verdict_on(detection(0.2, -10, 0.03, 0.9)).last_resort);  // clutter of a like shape
   EXPECT_FALSE(verdict_on(detection(0.25, 0.2, -0.1, 0.8)).last_resort);
   EXPECT_FALSE(verdict_on(detection(0.25, -10, 0.2, 0.99)).last_resort);
   EXPECT_FALSE(verdict_on(detection(0.15, -10, -10, 0.99)).last_resort);

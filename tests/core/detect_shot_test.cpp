@@ -50,6 +50,44 @@ Matrix3 axes(const LocalFrame& f) {
   return m;
 }
 
+/// A limb: a bent rod of 8 mm radius with a bulge, from which a picture shows only what faces +z.
+TestCloud limb(bool all) {
+  TestCloud cloud;
+  for (int i = 0; i < 120; ++i)
+    for (int j = 0; j < 40; ++j) {
+      const double along = -0.06 + 0.001 * i, angle = 2 * M_PI * j / 40;
+      const double radius = 0.008 + 0.003 * std::exp(-along * along / 0.0004);
+      const Vector3 normal(0, std::cos(angle), std::sin(angle));
+      if (!all && normal.z() < 0) continue;
+      cloud.positions.push_back(testing::point3f(Vector3(along, 8 * along * along, 0) + radius * normal));
+      cloud.normals.push_back(testing::normal16(normal));
+    }
+  return cloud;
+}
+
+TEST(Shot, WhatFacesAwayDoesNotCount) {
+  // On the front of a limb, a picture and the whole model must tell the same.
+  const TestCloud whole = limb(true), front = limb(false);
+  AlignedBlock block(8 << 20);
+  Workspace workspace(block.span());
+  PointGrid grids[2];
+  ShotDescriber describer;
+  describer.lay_out(workspace);
+  for (PointGrid& grid : grids) grid.lay_out(workspace, whole.positions.size());
+  ASSERT_TRUE(grids[0].build(whole.positions, 0.02));
+  ASSERT_TRUE(grids[1].build(front.positions, 0.02));
+  for (int k = -4; k <= 4; ++k) {
+    const double along = 0.005 * k;
+    const Point3f at = testing::point3f(Vector3(along, 8 * along * along, 0.008));
+    Descriptor a, b;
+    LocalFrame f, g;
+    ASSERT_TRUE(describer.describe_at(whole.view(), grids[0], at, 0.03, a, f));
+    ASSERT_TRUE(describer.describe_at(front.view(), grids[1], at, 0.03, b, g));
+    EXPECT_GT(dot(a, b), 0.97 * 127 * 127) << k;
+    EXPECT_GT(cos_angle(axes(f).transpose() * axes(g)), 0.98) << k;
+  }
+}
+
 TEST(Shot, TurnsWithTheObject) {
   const TestCloud cloud = testing::bumpy_cloud(2500);
   const RigidTransform pose = testing::test_pose(1.9, Vector3(1, -2, 0.5), Vector3(0.3, -0.2, 0.9));

@@ -1,0 +1,115 @@
+// Pictures like the paper's Figures 8 to 10: draw_registration CASE_DIR SCENE OUT.png MODEL_KEYPOINTS
+// SCENE_KEYPOINTS. Registers a case and draws the model's points where the scene shows them, regions and
+// deformed points in their colours, from the side on which the points are spread widest.
+#include <Eigen/Geometry>
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/detect/symmetric_eigen.hpp"
+#include "drivers/images/png.hpp"
+#include "firmware-app/pictures/scene_picture.hpp"
+#include "tests/accuracy/registration_runs.hpp"
+
+namespace pliant {
+namespace {
+
+Vector3 vector3(const Point3f& p) {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+
+Point3f point3f(const Vector3& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+/// camera <- scene: looks along the direction in which the points are spread least, from the side of `front`.
+RigidTransform looking_at(std::span<const Point3f> points, const Vector3& front) {
+  Vector3 mean = Vector3::Zero();
+  for (const Point3f& p : points) mean += vector3(p);
+  mean /= static_cast<double>(points.size());
+  Matrix3 spread = Matrix3::Zero();
+  for (const Point3f& p : points) spread += (vector3(p) - mean) * (vector3(p) - mean).transpose();
+  const SymmetricEigen eigen = symmetric_eigen(spread);
+  Vector3 z = eigen.vectors.col(0);
+  if (z.dot(front) > 0) z = -z;
+  const Vector3 y = eigen.vectors.col(2);  // the longest way runs down the picture
+  const Vector3 x = y.cross(z);
+  RigidTransform camera;
+  camera.rotation.row(0) = x.transpose();
+  camera.rotation.row(1) = y.transpose();
+  camera.rotation.row(2) = z.transpose();
+  const double size = std::sqrt(eigen.values(2) / static_cast<double>(points.size()));
+  camera.translation = Vector3(0, 0, 8 * size) - camera.rotation * mean;
+  return camera;
+}
+
+int draw(char** argv) {
+  const std::filesystem::path folder(argv[1]);
+  const BuiltFromFile model(folder / "model.ply");
+  const Result<Geometry> scene = read_geometry(folder / argv[2]);
+  if (!model.good || !scene) {
+    std::fputs("draw_registration: the case cannot be read\n", stderr);
+    return 2;
+  }
+  RegistrationSettings settings;
+  settings.model_keypoints = static_cast<std::uint32_t>(std::strtoul(argv[4], nullptr, 10));
+  settings.scene_keypoints = static_cast<std::uint32_t>(std::strtoul(argv[5], nullptr, 10));
+  ReadyRegistration run(model.view, scene->vertices.size(), settings);
+  if (run.fault != nullptr) {
+    std::fprintf(stderr, "draw_registration: %s\n", run.fault);
+    return 2;
+  }
+  const RegistrationResult& result = run.registration.register_cloud(scene->vertices);
+  if (result.instances.empty()) {
+    std::fputs("draw_registration: not found\n", stderr);
+    return 1;
+  }
+  const InstanceResult& found = result.instances[0];
+  const RigidTransform& base = found.regions[0].transform;
+  // Deformed points should lie on the side that is seen.
+  Vector3 front = Vector3::Zero();
+  std::vector<float> displacement(model.view.size(), 0);
+  for (std::size_t i = 0; i < model.view.size(); ++i) {
+    if (found.labels[i] != kDeformed) continue;
+    const Normal16& n = model.view.normals()[i];
+    front += base.rotation * Vector3(n.x, n.y, n.z);
+    displacement[i] =
+        static_cast<float>((vector3(found.positions[i]) - base * vector3(model.view.positions()[i])).norm());
+  }
+  const RigidTransform camera = looking_at(found.positions, front);
+  std::vector<Point3f> points;
+  std::vector<std::int8_t> labels(found.labels.begin(), found.labels.end());
+  for (std::size_t i = 0; i < model.view.size(); ++i) {
+    points.push_back(point3f(camera * vector3(found.positions[i])));
+    // What faces away would shine through.
+    const Normal16& n = model.view.normals()[i];
+    const std::size_t region = found.labels[i] > 0 ? static_cast<std::size_t>(found.labels[i]) : 0;
+    const Vector3 normal =
+        camera.rotation * found.regions[region].transform.rotation * Vector3(n.x, n.y, n.z);
+    if (normal.dot(vector3(points.back())) > 0) points.back().z = -1;
+  }
+  SceneView view;
+  view.positions = points;
+  view.labels = labels;
+  view.displacement = displacement;
+  view.spacing = model.view.spacing();
+  view.camera = camera_that_shows(points, 480, 480);
+  view.title = folder.filename().string();
+  const Canvas canvas = draw_scene(view);
+  if (const Outcome written = write_png_rgb8(argv[3], canvas.width(), canvas.height(), canvas.rgb());
+      !written) {
+    std::fprintf(stderr, "draw_registration: %s\n", written.error().message.c_str());
+    return 3;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  if (argc != 6) {
+    std::fputs("usage: draw_registration CASE_DIR SCENE OUT.png MODEL_KEYPOINTS SCENE_KEYPOINTS\n", stderr);
+    return 2;
+  }
+  return pliant::draw(argv);
+}
