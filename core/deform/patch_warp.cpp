@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "core/deform/patch_readings.hpp"
 #include "core/deform/strain.hpp"
 #include "core/track/aside.hpp"
-#include "core/track/associate.hpp"
 #include "core/track/part_search.hpp"
 #include "core/track/steady.hpp"
 
@@ -15,9 +15,6 @@ namespace {
 /// Of all readings that a patch could have, the share that its region's pull is worth: enough to bring back
 /// what nobody sees, too little to hold what a few readings move.
 constexpr double kAnchorShare = 0.02;
-/// The same for a patch that its readings put where its region is: half of what its own readings weigh, since
-/// along the surface they do not hold it, and springs would drag it after a part that moves.
-constexpr double kHoldShare = 0.5;
 /// What is left of a spring between two regions: they were told apart because they move as at a joint. Enough
 /// to keep patches together that nobody sees.
 constexpr double kJointShare = 0.01;
@@ -44,83 +41,6 @@ void find_homes(const PatchTables& patches, const PointState& points, PatchWarp&
   for (std::size_t p = 0; p < patches.count; ++p)
     warp.home[p] =
         static_cast<std::int8_t>(std::max_element(counts[p].begin(), counts[p].end()) - counts[p].begin());
-}
-
-/// The patches' centres and integer poses.
-void place(const ModelTables& model, const PatchTables& patches, PatchWarp& warp) noexcept {
-  for (std::size_t p = 0; p < patches.count; ++p) {
-    warp.fixed[p] = FixedPose(warp.pose[p], model.centre);
-    const Vector3 c = warp.pose[p] * patches.centres[p] * kUnitsPerMetre;
-    warp.centre[p] = {static_cast<std::int32_t>(c.x()), static_cast<std::int32_t>(c.y()),
-                      static_cast<std::int32_t>(c.z())};
-  }
-}
-
-using Chosen = std::array<bool, kMaxPatches>;  // patches
-
-struct Gates {
-  std::int32_t inward = 0, outward = 0;  // 1/16 mm, at most 8191
-  PixelSpan spacing;
-};
-
-/// What gather() works with.
-struct Look {
-  const ModelTables& model;
-  const PatchTables& patches;
-  const Surface& surface;
-  const Projector& projector;
-  Gates gates;
-  int step = 1;  // pixels between looks aside
-};
-
-/// Adds the row of a reading that lies `residual` (1/256 mm) from the point `at` along `n` (Q14).
-void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::int32_t weight,
-             const IntPoint& centre, PlaneMoments& moments) noexcept {
-  const std::int32_t x = at.x - centre.x, y = at.y - centre.y, z = at.z - centre.z;
-  moments.add(
-      {(y * n.z - z * n.y) >> 14, (z * n.x - x * n.z) >> 14, (x * n.y - y * n.x) >> 14, n.x, n.y, n.z},
-      residual, weight);
-}
-
-void add_aside(const Look& look, int u, int v, const IntPoint& at, const IntPoint& n, const IntPoint& centre,
-               PlaneMoments& moments) noexcept {
-  Aside aside;
-  const AsideReach reach{look.gates.inward, look.gates.outward, look.step, look.gates.spacing};
-  if (find_aside(look.surface, reach, u, v, at, n, aside))
-    add_row(at, aside.direction, aside.distance * 16, tukey_weight(aside.distance, look.gates.inward), centre,
-            moments);
-}
-
-/// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its
-/// pixel, into the moments of its patch about the patch's centre. Formats are those of PlaneMoments. Overflow
-/// bounds: gates <= 8191, so that a difference squared stays below 2^26 and three below 2^28; arms are at
-/// most a model's extent, 2^16, times Q14 normals: below 2^31 for the difference of two.
-[[gnu::noinline]] void gather(const Look& look, const PointState& points, const Chosen& chosen,
-                              PatchWarp& warp) noexcept {
-  const ModelTables& model = look.model;
-  for (std::size_t i = 0; i < model.size; ++i) {
-    const std::size_t p = look.patches.patch_of[i];
-    if (!chosen[p]) continue;
-    const FixedPose& pose = warp.fixed[p];
-    const IntPoint n = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
-    const IntPoint at = pose.point(model.x[i], model.y[i], model.z[i]);
-    if (!faces_camera(at, n, kCos75)) continue;
-    int u = 0, v = 0;
-    if (!look.projector.project(at, u, v)) continue;
-    const std::uint16_t z8 = look.surface.depth_at(u, v);
-    const std::int32_t gap = 2 * z8 - at.z;
-    if (z8 != 0 && -gap > look.gates.outward) continue;
-    if (z8 == 0 || gap > look.gates.inward) {
-      add_aside(look, u, v, at, n, warp.centre[p], warp.moments[p]);
-      continue;
-    }
-    const IntPoint q = look.surface.vertex(u, v, z8);
-    const std::int32_t residual = plane_distance(q, at, n) - points.misfit[i];
-    const std::int32_t limit = (residual > 0 ? look.gates.outward : look.gates.inward) * 16;
-    const std::int32_t w = tukey_weight(residual, limit);
-    if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
-    add_row(at, n, residual, w, warp.centre[p], warp.moments[p]);
-  }
 }
 
 /// Weight of a spring that gives way beyond `scale`.
@@ -166,52 +86,6 @@ void add_borders(const PatchTables& patches, const Material& material, PatchWarp
   }
 }
 
-void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
-  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
-                   kResidual = 1 / 256000.0;
-  std::size_t k = 0;
-  for (std::size_t row = 0; row < 6; ++row) {
-    const double unit_row = row < 3 ? kArm : kNormal;
-    for (std::size_t column = row; column < 6; ++column)
-      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
-    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
-  }
-}
-
-/// By how much the sum of squares falls when the patch follows its readings as far as a held one may.
-double gain_of(const PatchTables& patches, const PlaneMoments& moments, std::size_t p) noexcept {
-  Symmetric6 a;
-  Vector6 b = Vector6::Zero();
-  add_readings(moments, a, b);
-  const double hold = kHoldShare * patches.sizes[p];
-  a.add_shift_spring(hold);
-  a.add_turn_spring(hold * 0.5 * patches.radius * patches.radius);
-  Factor6 factor;
-  return factor.factorise(a) ? b.dot(factor.solve(b)) : 0;
-}
-
-/// How well readings fit a patch.
-struct Fit {
-  double weight = 0;  // of readings
-  double square = 0;  // mean residual squared, metres squared
-  double gain = 0;    // by how much the patch's own motion would lower the sum of squares
-};
-
-void measure(const Look& look, const PointState& points, const Chosen& chosen, PatchWarp& warp,
-             std::array<Fit, kMaxPatches>& fits) noexcept {
-  for (std::size_t p = 0; p < look.patches.count; ++p)
-    if (chosen[p]) warp.moments[p] = PlaneMoments();
-  place(look.model, look.patches, warp);
-  gather(look, points, chosen, warp);
-  for (std::size_t p = 0; p < look.patches.count; ++p) {
-    if (!chosen[p]) continue;
-    const PlaneMoments& m = warp.moments[p];
-    const auto weight = static_cast<double>(m.weight);
-    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0,
-               gain_of(look.patches, m, p)};
-  }
-}
-
 /// What smoothing over nine pixels leaves of σ: residuals below it tell no place from another.
 constexpr double kSmoothedNoise = 0.35;
 /// Mean squares of a dozen readings differ by half of themselves by chance.
@@ -227,15 +101,15 @@ constexpr double kByChanceFreely = 12;
 /// Patches that the readings put as well where their region is go back there: what slid along the surface
 /// unnoticed does not add up over the frames. Not so beside a patch that must be elsewhere: what moves takes
 /// its neighbours along, whose readings may not show it. Notes what is seen of every patch; returns those
-/// that are off their region.
-Chosen return_home(const Look& look, const RegionSet& regions, const PointState& points, double noise,
-                   PatchWarp& warp) noexcept {
+/// that are off their region or are pulled off it.
+ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const PointState& points,
+                          double noise, PatchWarp& warp) noexcept {
   const double smoothed = kSmoothedNoise * noise, near = kAtHome * smoothed;
   const std::size_t count = look.patches.count;
-  std::array<Fit, kMaxPatches> here, home;
-  Chosen all, astray{};
+  std::array<PatchFit, kMaxPatches> here, home;
+  ChosenPatches all, astray{};
   all.fill(true);
-  measure(look, points, all, warp, here);
+  measure_fits(look, points, all, warp, here);
   home = here;
   const std::array<RigidTransform, kMaxPatches> own = warp.pose;
   for (std::size_t p = 0; p < count; ++p) {
@@ -243,7 +117,7 @@ Chosen return_home(const Look& look, const RegionSet& regions, const PointState&
     astray[p] = patch_deviation(look.patches, warp, p, region) > near * near;
     warp.pose[p] = region;
   }
-  measure(look, points, astray, warp, home);
+  measure_fits(look, points, astray, warp, home);
   std::array<bool, kMaxPatches> fits{};
   for (std::size_t p = 0; p < count; ++p) {
     const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
@@ -257,7 +131,7 @@ Chosen return_home(const Look& look, const RegionSet& regions, const PointState&
       if (look.patches.neighbours[p].has(q) && warp.home[q] == warp.home[p] && here[q].weight > 0)
         warp.held[p] = fits[q];
     if (!warp.held[p]) warp.pose[p] = own[p];
-    const Fit& now = warp.held[p] ? home[p] : here[p];
+    const PatchFit& now = warp.held[p] ? home[p] : here[p];
     astray[p] = (astray[p] && !warp.held[p]) || now.gain > kByChanceFreely * noise * noise;
   }
   return astray;
@@ -268,10 +142,10 @@ Chosen return_home(const Look& look, const RegionSet& regions, const PointState&
 constexpr int kReachOfSprings = 3;
 
 /// The patches that may move off their regions: those that are off them, and what their springs reach.
-Chosen moving_patches(const PatchTables& patches, const Chosen& astray) noexcept {
-  Chosen moving = astray;
+ChosenPatches moving_patches(const PatchTables& patches, const ChosenPatches& astray) noexcept {
+  ChosenPatches moving = astray;
   for (int ring = 0; ring < kReachOfSprings; ++ring) {
-    const Chosen inner = moving;
+    const ChosenPatches inner = moving;
     for (std::size_t k = 0; k < patches.border_count; ++k) {
       const PatchBorder& border = patches.borders[k];
       if (inner[border.a] || inner[border.b]) moving[border.a] = moving[border.b] = true;
@@ -281,13 +155,11 @@ Chosen moving_patches(const PatchTables& patches, const Chosen& astray) noexcept
 }
 
 /// One balance of readings, anchors and springs. False when there is none.
-bool balance(const Look& look, const RegionSet& regions, const PointState& points, const Chosen& moving,
-             const Material& material, double limit, int iterations, PatchWarp& warp) noexcept {
+bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points,
+             const ChosenPatches& moving, const Material& material, double limit, int iterations,
+             PatchWarp& warp) noexcept {
   const std::size_t count = look.patches.count;
-  for (std::size_t p = 0; p < count; ++p)
-    if (moving[p]) warp.moments[p] = PlaneMoments();
-  place(look.model, look.patches, warp);
-  gather(look, points, moving, warp);
+  gather_readings(look, points, moving, warp);
   warp.system.clear(count);
   for (std::size_t p = 0; p < count; ++p) {
     if (!moving[p]) {
@@ -324,12 +196,12 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   const std::int32_t z = depth_of(regions[0].pose, model.centre);
   const double noise = surface.sigma(z) / kUnitsPerMetre, limit = tolerance.deformed(z) / kUnitsPerMetre;
   const Material material{noise, strain_limit(settings.material), bend_limit(settings.material)};
-  Look look{model, patches, surface, projector, {}, 1};
-  Gates& gates = look.gates;
+  PatchLook look{model, patches, surface, projector, {}, 1};
+  ReadingGates& gates = look.gates;
   gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
   const std::array<RigidTransform, kMaxPatches> before = warp.pose;
-  const Chosen moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
+  const ChosenPatches moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
   for (int round = 0; round < settings.rounds; ++round) {
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
     if (!balance(look, regions, points, moving, material, limit, settings.iterations, warp)) break;
@@ -341,7 +213,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
     if (moving[p])
       warp.pose[p] =
           steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius, kNoiseOfPose * noise);
-  place(model, patches, warp);
+  place_patches(model, patches, warp);
 }
 
 }  // namespace pliant

@@ -1,0 +1,116 @@
+#include "core/deform/patch_readings.hpp"
+
+#include "core/track/aside.hpp"
+#include "core/track/associate.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// Adds the row of a reading that lies `residual` (1/256 mm) from the point `at` along `n` (Q14).
+void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::int32_t weight,
+             const IntPoint& centre, PlaneMoments& moments) noexcept {
+  const std::int32_t x = at.x - centre.x, y = at.y - centre.y, z = at.z - centre.z;
+  moments.add(
+      {(y * n.z - z * n.y) >> 14, (z * n.x - x * n.z) >> 14, (x * n.y - y * n.x) >> 14, n.x, n.y, n.z},
+      residual, weight);
+}
+
+void add_aside(const PatchLook& look, int u, int v, const IntPoint& at, const IntPoint& n,
+               const IntPoint& centre, PlaneMoments& moments) noexcept {
+  Aside aside;
+  const AsideReach reach{look.gates.inward, look.gates.outward, look.step, look.gates.spacing};
+  if (find_aside(look.surface, reach, u, v, at, n, aside))
+    add_row(at, aside.direction, aside.distance * 16, tukey_weight(aside.distance, look.gates.inward), centre,
+            moments);
+}
+
+/// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its
+/// pixel, into the moments of its patch about the patch's centre. Formats are those of PlaneMoments. Overflow
+/// bounds: gates <= 8191, so that a difference squared stays below 2^26 and three below 2^28; arms are at
+/// most a model's extent, 2^16, times Q14 normals: below 2^31 for the difference of two.
+[[gnu::noinline]] void gather(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
+                              PatchWarp& warp) noexcept {
+  const ModelTables& model = look.model;
+  for (std::size_t i = 0; i < model.size; ++i) {
+    const std::size_t p = look.patches.patch_of[i];
+    if (!chosen[p]) continue;
+    const FixedPose& pose = warp.fixed[p];
+    const IntPoint n = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
+    const IntPoint at = pose.point(model.x[i], model.y[i], model.z[i]);
+    if (!faces_camera(at, n, kCos75)) continue;
+    int u = 0, v = 0;
+    if (!look.projector.project(at, u, v)) continue;
+    const std::uint16_t z8 = look.surface.depth_at(u, v);
+    const std::int32_t gap = 2 * z8 - at.z;
+    if (z8 != 0 && -gap > look.gates.outward) continue;
+    if (z8 == 0 || gap > look.gates.inward) {
+      add_aside(look, u, v, at, n, warp.centre[p], warp.moments[p]);
+      continue;
+    }
+    const IntPoint q = look.surface.vertex(u, v, z8);
+    const std::int32_t residual = plane_distance(q, at, n) - points.misfit[i];
+    const std::int32_t limit = (residual > 0 ? look.gates.outward : look.gates.inward) * 16;
+    const std::int32_t w = tukey_weight(residual, limit);
+    if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
+    add_row(at, n, residual, w, warp.centre[p], warp.moments[p]);
+  }
+}
+
+/// By how much the sum of squares falls when the patch follows its readings as far as a held one may.
+double gain_of(const PatchTables& patches, const PlaneMoments& moments, std::size_t p) noexcept {
+  Symmetric6 a;
+  Vector6 b = Vector6::Zero();
+  add_readings(moments, a, b);
+  const double hold = kHoldShare * patches.sizes[p];
+  a.add_shift_spring(hold);
+  a.add_turn_spring(hold * 0.5 * patches.radius * patches.radius);
+  Factor6 factor;
+  return factor.factorise(a) ? b.dot(factor.solve(b)) : 0;
+}
+
+}  // namespace
+
+/// The patches' centres and integer poses.
+void place_patches(const ModelTables& model, const PatchTables& patches, PatchWarp& warp) noexcept {
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    warp.fixed[p] = FixedPose(warp.pose[p], model.centre);
+    const Vector3 c = warp.pose[p] * patches.centres[p] * kUnitsPerMetre;
+    warp.centre[p] = {static_cast<std::int32_t>(c.x()), static_cast<std::int32_t>(c.y()),
+                      static_cast<std::int32_t>(c.z())};
+  }
+}
+
+void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
+  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
+                   kResidual = 1 / 256000.0;
+  std::size_t k = 0;
+  for (std::size_t row = 0; row < 6; ++row) {
+    const double unit_row = row < 3 ? kArm : kNormal;
+    for (std::size_t column = row; column < 6; ++column)
+      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
+    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
+  }
+}
+
+void gather_readings(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
+                     PatchWarp& warp) noexcept {
+  for (std::size_t p = 0; p < look.patches.count; ++p)
+    if (chosen[p]) warp.moments[p] = PlaneMoments();
+  place_patches(look.model, look.patches, warp);
+  gather(look, points, chosen, warp);
+}
+
+void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
+                  PatchWarp& warp, std::array<PatchFit, kMaxPatches>& fits) noexcept {
+  gather_readings(look, points, chosen, warp);
+  for (std::size_t p = 0; p < look.patches.count; ++p) {
+    if (!chosen[p]) continue;
+    const PlaneMoments& m = warp.moments[p];
+    const auto weight = static_cast<double>(m.weight);
+    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0,
+               gain_of(look.patches, m, p)};
+  }
+}
+
+}  // namespace pliant

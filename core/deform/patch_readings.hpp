@@ -1,0 +1,55 @@
+// What the depth picture says of every patch: the readings of its points, gathered into the moments of its
+// small motions.
+#pragma once
+
+#include "core/camera/surface.hpp"
+#include "core/deform/patch_warp.hpp"
+
+namespace pliant {
+
+using ChosenPatches = std::array<bool, kMaxPatches>;
+
+/// How far a point's reading may lie from it, 1/16 mm, at most 8191.
+struct ReadingGates {
+  std::int32_t inward = 0, outward = 0;
+  PixelSpan spacing;
+};
+
+/// What the readings are looked up with.
+struct PatchLook {
+  const ModelTables& model;
+  const PatchTables& patches;
+  const Surface& surface;
+  const Projector& projector;
+  ReadingGates gates;
+  int step = 1;  ///< pixels between looks aside
+};
+
+/// How well readings fit a patch.
+struct PatchFit {
+  double weight = 0;  ///< of readings
+  double square = 0;  ///< mean residual squared, metres squared
+  double gain = 0;    ///< by how much the patch's own motion would lower the sum of squares
+};
+
+/// Of all readings that a patch could have, the share that its region's pull is worth for a patch that its
+/// readings put where its region is: half of what they weigh, since along the surface they do not hold it,
+/// and springs would drag it after a part that moves.
+inline constexpr double kHoldShare = 0.5;
+
+/// Looks up the readings of the chosen patches' points where the warp has them: warp.moments, and the integer
+/// poses.
+void gather_readings(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
+                     PatchWarp& warp) noexcept;
+
+/// The same, and how well they fit.
+void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
+                  PatchWarp& warp, std::array<PatchFit, kMaxPatches>& fits) noexcept;
+
+/// Adds a patch's readings to its normal equations: radians and metres about its centre.
+void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept;
+
+/// The patches' centres and integer poses.
+void place_patches(const ModelTables& model, const PatchTables& patches, PatchWarp& warp) noexcept;
+
+}  // namespace pliant
