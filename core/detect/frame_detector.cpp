@@ -205,7 +205,7 @@ std::int64_t FrameDetector::slice_describe() noexcept {
     phase_ = Phase::match;
     cursor_ = 0;
   }
-  return 90 * static_cast<std::int64_t>(kKeys);
+  return 70 * static_cast<std::int64_t>(kKeys);
 }
 
 std::int64_t FrameDetector::slice_match() noexcept {
@@ -223,7 +223,7 @@ std::int64_t FrameDetector::slice_match() noexcept {
     proposal_count_ = key_count_ * settings_.matches;
     cursor_ = 0;
   }
-  return static_cast<std::int64_t>(group * settings_.model_keypoints) / 12 + 1;
+  return static_cast<std::int64_t>(group * settings_.model_keypoints) / 16 + 1;
 }
 
 }  // namespace pliant

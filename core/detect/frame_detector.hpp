@@ -57,7 +57,7 @@ class FrameDetector {
   /// As above, but looks for the object near `pose` (camera <- model) first, within `radius` metres.
   void begin(const Surface& surface, const RigidTransform& pose, double radius) noexcept;
 
-  /// Works on for about `budget` units of about 1000 instructions, at least one slice (at most about 2000
+  /// Works on for about `budget` units of about 1000 instructions, at least one slice (at most about 9000
   /// units).
   DetectState step(std::int64_t budget) noexcept;
   [[nodiscard]] DetectState state() const noexcept { return state_; }

@@ -62,7 +62,7 @@ std::int64_t FrameDetector::slice_propose() noexcept {
 }
 
 std::int64_t FrameDetector::slice_vote() noexcept {
-  constexpr std::size_t kBatch = 512;
+  constexpr std::size_t kBatch = 128;
   const std::size_t first = votes_.size() - proposal_count_ + cursor_;
   votes_.count_votes(first, std::min(first + kBatch, votes_.size()));
   cursor_ += kBatch;
@@ -70,13 +70,14 @@ std::int64_t FrameDetector::slice_vote() noexcept {
     voted_count_ = votes_.best(voted_);
     phase_ = Phase::look;
     cursor_ = 0;
+    return static_cast<std::int64_t>(kBatch * 11 + 2 * votes_.size());
   }
-  return kBatch;
+  return kBatch * 11;
 }
 
 std::int64_t FrameDetector::slice_look() noexcept {
   // Poses by local frames are too far off to judge: they are brought a little nearer first.
-  constexpr std::size_t kBatch = 32;
+  constexpr std::size_t kBatch = 16;
   const std::size_t last = std::min(cursor_ + kBatch, voted_count_);
   for (; cursor_ < last; ++cursor_) {
     RigidTransform pose = votes_.mean_pose(voted_[cursor_]);
@@ -92,7 +93,7 @@ std::int64_t FrameDetector::slice_look() noexcept {
     cursor_ = 0;
     if (hinted_ && round_ == 0) try_pose(hint_);
   }
-  return kBatch * 35;
+  return kBatch * 100;
 }
 
 void FrameDetector::fill_shortlist() noexcept {
@@ -140,7 +141,7 @@ std::int64_t FrameDetector::slice_shortlist() noexcept {
     phase_ = Phase::settle;
     cursor_ = 0;
   }
-  return 300;
+  return 600;
 }
 
 std::int64_t FrameDetector::slice_settle() noexcept {
@@ -158,7 +159,7 @@ std::int64_t FrameDetector::slice_settle() noexcept {
     candidate.score = score;
   }
   if (cursor_ >= finalists_.all().size()) decide();
-  return 1500;
+  return 2300;
 }
 
 bool FrameDetector::supported(const RigidTransform& pose) const noexcept {
@@ -186,9 +187,11 @@ bool FrameDetector::supported(const RigidTransform& pose) const noexcept {
 void FrameDetector::decide() noexcept {
   best_ = finalists_.best();
   const Verdict verdict = verdict_on(best_);
-  const bool last = round_ + 1 >= settings_.rounds || order_next_ >= order_count_;
+  const bool all_described = order_next_ >= order_count_;
+  const bool last = round_ + 1 >= settings_.rounds || all_described;
+  // The last resort is for who has looked at everything, or nearly.
   const bool believed =
-      verdict.convincing || ((last || round_ >= 2) && verdict.last_resort && supported(best_.pose));
+      verdict.convincing || ((all_described || round_ >= 2) && verdict.last_resort && supported(best_.pose));
   if (believed && (last || !settings_.exhaustive)) {
     state_ = DetectState::found;
   } else if (last) {

@@ -85,7 +85,7 @@ TEST_P(SharedSequence, IsFollowed) {
 
 // In the third the object is away for 17 frames, and as many are granted to find it again.
 INSTANTIATE_TEST_SUITE_P(All, SharedSequence,
-                         testing::Values(Asked{"sim_bunny_press", 0.95, true},
+                         testing::Values(Asked{"sim_bunny_press", 0.9, true},
                                          Asked{"sim_homer_joints", 0.9, false},
                                          Asked{"sim_cushion_occlusion", 0.65, true},
                                          Asked{"sim_cheburashka_limbs", 0.9, false}),
