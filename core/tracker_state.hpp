@@ -51,6 +51,8 @@ struct TrackerState {
   bool was_tracked = false;  // ever
   bool just_lost = false;    // regions hold the pose at which it was lost: a hint where to search
   SearchState search = SearchState::idle;
+  bool seen_before = false;  // by the search before this one, at place_before
+  Vector3 place_before = Vector3::Zero();
   int frames_failed = 0;  // in a row, while following
   double confidence = 0;
 

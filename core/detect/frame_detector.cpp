@@ -121,6 +121,8 @@ std::int64_t FrameDetector::slice() noexcept {
       return slice_shortlist();
     case Phase::settle:
       return slice_settle();
+    case Phase::challenge:
+      return slice_challenge();
   }
   return 1;
 }

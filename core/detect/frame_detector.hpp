@@ -80,7 +80,8 @@ class FrameDetector {
     vote,
     look,
     shortlist,
-    settle
+    settle,
+    challenge
   };
   struct Proposal {
     std::uint16_t scene = 0;  // keypoint
@@ -102,6 +103,7 @@ class FrameDetector {
   std::int64_t slice_look() noexcept;
   std::int64_t slice_shortlist() noexcept;
   std::int64_t slice_settle() noexcept;
+  std::int64_t slice_challenge() noexcept;
   [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
   void fill_shortlist() noexcept;
   void try_pose(const RigidTransform& pose) noexcept;
@@ -152,6 +154,7 @@ class FrameDetector {
   std::array<std::uint32_t, kVoted> voted_;  // the best-voted poses
   std::array<Proposal, kVoted> looks_;       // a quick look at each; scene: its place in voted_
   std::array<RigidTransform, kShortlist> shortlist_;
+  RigidTransform challenged_;  // the best pose, of which other attitudes are tried
   Detection best_;
 };
 

@@ -34,6 +34,22 @@ Matrix3 axes_of(const LocalFrame& frame) noexcept {
   return m;
 }
 
+constexpr std::size_t kCubeAttitudes = 24;
+
+/// One of the turns that take a cube to itself, the first one none.
+Matrix3 cube_attitude(std::size_t k) noexcept {
+  constexpr std::array<std::array<int, 3>, 6> kOrders = {
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+  const auto& order = kOrders[k / 4];
+  const double first = (k & 1) != 0 ? -1 : 1, second = (k & 2) != 0 ? -1 : 1;
+  const double third = (k / 4 < 3 ? 1 : -1) * first * second;  // no mirror
+  Matrix3 turn = Matrix3::Zero();
+  turn(order[0], 0) = first;
+  turn(order[1], 1) = second;
+  turn(order[2], 2) = third;
+  return turn;
+}
+
 }  // namespace
 
 RigidTransform FrameDetector::pose_of(const Proposal& proposal) const noexcept {
@@ -158,8 +174,26 @@ std::int64_t FrameDetector::slice_settle() noexcept {
     if (close.score > 0.5 * candidate.score) candidate = close;
     candidate.score = score;
   }
-  if (cursor_ >= finalists_.all().size()) decide();
+  if (cursor_ >= finalists_.all().size()) {
+    const Detection best = finalists_.best();
+    if (best.score > 0 && !verdict_on(best).certain) {
+      challenged_ = best.pose;
+      phase_ = Phase::challenge;
+      cursor_ = 0;
+    } else {
+      decide();
+    }
+  }
   return 2300;
+}
+
+std::int64_t FrameDetector::slice_challenge() noexcept {
+  // Proposals need not have come near the attitudes in which a thing of a like shape would fit as well.
+  const Matrix3 turn = cube_attitude(++cursor_);
+  const Vector3& centre = model_.centre();
+  try_pose(challenged_ * RigidTransform{turn, centre - turn * centre});
+  if (cursor_ + 1 >= kCubeAttitudes) decide();
+  return 600;
 }
 
 bool FrameDetector::supported(const RigidTransform& pose) const noexcept {

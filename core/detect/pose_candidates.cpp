@@ -97,8 +97,8 @@ Verdict verdict_on(const Detection& detection) noexcept {
                        (detection.score > 0 ? std::max(detection.twin, 0.0) / detection.score : 0);
   const bool itself = doubt <= kMostDoubt || detection.score >= kBeyondDoubt;
   Verdict verdict;
-  verdict.convincing =
-      itself && (detection.score >= kCertain || (detection.score >= kConvincing && lone && in_sight));
+  verdict.certain = detection.score >= kCertain;
+  verdict.convincing = itself && (verdict.certain || (detection.score >= kConvincing && lone && in_sight));
   verdict.last_resort = detection.evidence.unexplained() <= kLittleUnexplained &&
                         detection.twin <= kLittleTwin * detection.score && lone && in_sight &&
                         detection.score >= kLastResort;

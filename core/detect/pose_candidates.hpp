@@ -55,6 +55,7 @@ class PoseCandidates {
 
 /// How far a detection may be believed.
 struct Verdict {
+  bool certain = false;      ///< nothing but the object scores so high
   bool convincing = false;   ///< as it is
   bool last_resort = false;  ///< once every keypoint was tried and the descriptors support it
 };
