@@ -15,11 +15,11 @@ constexpr int kFramesToReturn = 5;
 /// Work of the detector in one frame, in its units of about 1000 instructions: with the surface of a whole
 /// picture about as much as two tracked frames.
 constexpr std::int64_t kSearchBudget = 50000;
-/// Pixels of whose surface one unit takes care.
+/// Of the same work, what building the surface takes: pixels a unit.
 constexpr std::int64_t kPixelsEach = 40;
 
-/// Clutter has fitted to 0.36; what scores higher is taken up at once, the rest when the next search finds it
-/// in the same place.
+/// Simulated clutter has fitted to 0.36, real deformed objects from 0.41; what scores higher is taken up at
+/// once, the rest when the next search finds it in the same place.
 constexpr double kAtOnce = 0.4;
 
 /// How far from its last place a lost object is looked for first: where a hand carries it in half a second.
@@ -197,6 +197,7 @@ void Tracker::start_from(const RigidTransform& pose) noexcept {
   s.warp.reset(pose);
   s.following = true;
   s.search = SearchState::idle;
+  s.just_lost = s.seen_before = false;
   s.frames_failed = 0;
 }
 

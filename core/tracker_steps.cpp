@@ -6,6 +6,7 @@
 #include "core/deform/radius_search.hpp"
 #include "core/track/align.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/joints.hpp"
 #include "core/track/predict.hpp"
 #include "core/track/steady.hpp"
 #include "core/track/undecided.hpp"

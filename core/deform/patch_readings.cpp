@@ -2,27 +2,19 @@
 
 #include "core/track/aside.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/plane_equations.hpp"
 
 namespace pliant {
 
 namespace {
-
-/// Adds the row of a reading that lies `residual` (1/256 mm) from the point `at` along `n` (Q14).
-void add_row(const IntPoint& at, const IntPoint& n, std::int32_t residual, std::int32_t weight,
-             const IntPoint& centre, PlaneMoments& moments) noexcept {
-  const std::int32_t x = at.x - centre.x, y = at.y - centre.y, z = at.z - centre.z;
-  moments.add(
-      {(y * n.z - z * n.y) >> 14, (z * n.x - x * n.z) >> 14, (x * n.y - y * n.x) >> 14, n.x, n.y, n.z},
-      residual, weight);
-}
 
 void add_aside(const PatchLook& look, int u, int v, const IntPoint& at, const IntPoint& n,
                const IntPoint& centre, PlaneMoments& moments) noexcept {
   Aside aside;
   const AsideReach reach{look.gates.inward, look.gates.outward, look.step, look.gates.spacing};
   if (find_aside(look.surface, reach, u, v, at, n, aside))
-    add_row(at, aside.direction, aside.distance * 16, tukey_weight(aside.distance, look.gates.inward), centre,
-            moments);
+    add_plane_row(moments, at, aside.direction, aside.distance * 16,
+                  tukey_weight(aside.distance, look.gates.inward), centre);
 }
 
 /// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its
@@ -53,7 +45,7 @@ void add_aside(const PatchLook& look, int u, int v, const IntPoint& at, const In
     const std::int32_t limit = (residual > 0 ? look.gates.outward : look.gates.inward) * 16;
     const std::int32_t w = tukey_weight(residual, limit);
     if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
-    add_row(at, n, residual, w, warp.centre[p], warp.moments[p]);
+    add_plane_row(warp.moments[p], at, n, residual, w, warp.centre[p]);
   }
 }
 
@@ -82,15 +74,11 @@ void place_patches(const ModelTables& model, const PatchTables& patches, PatchWa
 }
 
 void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
-  constexpr double kArm = 1 / kUnitsPerMetre, kNormal = 1 / 16384.0, kWeight = 1 / 256.0,
-                   kResidual = 1 / 256000.0;
-  std::size_t k = 0;
-  for (std::size_t row = 0; row < 6; ++row) {
-    const double unit_row = row < 3 ? kArm : kNormal;
-    for (std::size_t column = row; column < 6; ++column)
-      a.at(column, row) += static_cast<double>(m.a[k++]) * unit_row * (column < 3 ? kArm : kNormal) * kWeight;
-    b[static_cast<int>(row)] += static_cast<double>(m.b[row]) * unit_row * kWeight * kResidual;
-  }
+  const PlaneEquations equations = plane_equations(m);
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t column = 0; column <= row; ++column)
+      a.at(row, column) += equations.a(static_cast<int>(row), static_cast<int>(column));
+  b += equations.b;
 }
 
 void gather_readings(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,

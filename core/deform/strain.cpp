@@ -45,20 +45,4 @@ float strain_at(const PatchTables& patches, const Strain& strain, std::size_t i)
   return sum / static_cast<float>(1 << PointBlend::kShift);
 }
 
-bool find_joint(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, std::int8_t parent,
-                Vector3& joint) noexcept {
-  Vector3 sum = Vector3::Zero();
-  double edges = 0;
-  for (std::size_t b = 0; b < patches.border_count; ++b) {
-    const PatchBorder& border = patches.borders[b];
-    const std::int8_t x = warp.home[border.a], y = warp.home[border.b];
-    if (!(x == k && y == parent) && !(x == parent && y == k)) continue;
-    sum += border.edges * border.centre;
-    edges += border.edges;
-  }
-  if (!(edges > 0)) return false;
-  joint = sum / edges;
-  return true;
-}
-
 }  // namespace pliant

@@ -30,9 +30,4 @@ struct Strain {
 /// Of the surface around point i: the blend of its patches' strains; 0 where nothing stretches.
 [[nodiscard]] float strain_at(const PatchTables& patches, const Strain& strain, std::size_t i) noexcept;
 
-/// Where region k hangs on `parent`: the middle of the border between them, model frame, metres. False where
-/// they do not touch.
-[[nodiscard]] bool find_joint(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
-                              std::int8_t parent, Vector3& joint) noexcept;
-
 }  // namespace pliant

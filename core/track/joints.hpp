@@ -21,4 +21,9 @@ using Joints = std::array<Joint, limits::kMaxRegions>;
 [[nodiscard]] Joints find_joints(const PatchTables& patches, const PatchWarp& warp,
                                  const RegionSet& regions) noexcept;
 
+/// Where region k hangs on `parent`: the middle of the border between them, model frame, metres. False where
+/// they do not touch.
+[[nodiscard]] bool find_joint(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
+                              std::int8_t parent, Vector3& joint) noexcept;
+
 }  // namespace pliant

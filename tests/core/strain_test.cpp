@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/track/joints.hpp"
 #include "tests/core/track_scene.hpp"
 
 namespace pliant {
