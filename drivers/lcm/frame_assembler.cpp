@@ -7,11 +7,11 @@ namespace pliant {
 
 namespace {
 
-/// Notes a part; false where the parts are not those that came before.
+/// Notes a part; false where it was there already, or the parts are not those that came before.
 bool note(std::vector<bool>& seen, std::int16_t part, std::int16_t parts) {
   const auto count = static_cast<std::size_t>(parts);
   if (seen.empty()) seen.assign(count, false);
-  if (seen.size() != count) return false;
+  if (seen.size() != count || seen[static_cast<std::size_t>(part)]) return false;
   seen[static_cast<std::size_t>(part)] = true;
   return true;
 }
@@ -42,12 +42,33 @@ void FrameAssembler::begin(std::int64_t utime, std::int64_t frame, std::int64_t 
   frame_.position.clear();
   frame_.displacement.clear();
   frame_.strain.clear();
+  deformed_.clear();
   regions_seen_.clear();
   deformed_seen_.clear();
 }
 
-bool FrameAssembler::whole() const {
-  return all(regions_seen_) && (frame_.state != TrackState::tracking || all(deformed_seen_));
+/// The deformed points in ascending order, whatever the order of their parts; false where one is told twice.
+bool FrameAssembler::order_deformed() {
+  std::sort(deformed_.begin(), deformed_.end(),
+            [](const DeformedPoint& a, const DeformedPoint& b) { return a.index < b.index; });
+  for (std::size_t i = 0; i < deformed_.size(); ++i) {
+    const DeformedPoint& point = deformed_[i];
+    if (i > 0 && deformed_[i - 1].index == point.index) return false;
+    frame_.deformed.push_back(point.index);
+    frame_.position.push_back(point.position);
+    frame_.displacement.push_back(point.displacement);
+    frame_.strain.push_back(point.strain);
+  }
+  return true;
+}
+
+/// True when nothing is missing and nothing contradicts.
+bool FrameAssembler::finish() {
+  if (!all(regions_seen_) || (frame_.state == TrackState::tracking && !all(deformed_seen_))) return false;
+  told_ = true;
+  if (order_deformed()) return true;
+  ++incomplete_;
+  return false;
 }
 
 bool FrameAssembler::take(const RegionsMessage& message) {
@@ -60,20 +81,15 @@ bool FrameAssembler::take(const RegionsMessage& message) {
     frame_.labels.resize(static_cast<std::size_t>(message.model_points), kNotObserved);
     std::copy(message.labels.begin(), message.labels.end(), frame_.labels.begin() + message.first_point);
   }
-  told_ = whole();
-  return told_;
+  return finish();
 }
 
 bool FrameAssembler::take(const DeformedMessage& message) {
   begin(message.utime, message.frame, message.model_id);
   if (told_ || !note(deformed_seen_, message.part, message.parts)) return false;
-  frame_.deformed.insert(frame_.deformed.end(), message.index.begin(), message.index.end());
-  frame_.position.insert(frame_.position.end(), message.position.begin(), message.position.end());
-  frame_.displacement.insert(frame_.displacement.end(), message.displacement.begin(),
-                             message.displacement.end());
-  frame_.strain.insert(frame_.strain.end(), message.strain.begin(), message.strain.end());
-  told_ = whole();
-  return told_;
+  for (std::size_t i = 0; i < message.index.size(); ++i)
+    deformed_.push_back({message.index[i], message.position[i], message.displacement[i], message.strain[i]});
+  return finish();
 }
 
 bool ModelAssembler::take(const ModelMessage& message) {

@@ -28,14 +28,22 @@ class FrameAssembler {
   [[nodiscard]] bool take(const RegionsMessage& message);
   [[nodiscard]] bool take(const DeformedMessage& message);
   [[nodiscard]] const ReceivedFrame& frame() const { return frame_; }
-  /// Frames given up because messages of a newer one came before their last.
+  /// Frames given up: messages of a newer one came before their last, or their parts contradict each other.
   [[nodiscard]] std::int64_t incomplete() const { return incomplete_; }
 
  private:
+  struct DeformedPoint {
+    std::int16_t index;
+    Point3f position, displacement;
+    float strain;
+  };
+
   void begin(std::int64_t utime, std::int64_t frame, std::int64_t model_id);
-  [[nodiscard]] bool whole() const;
+  [[nodiscard]] bool finish();
+  [[nodiscard]] bool order_deformed();
 
   ReceivedFrame frame_;
+  std::vector<DeformedPoint> deformed_;  // as they came
   std::vector<bool> regions_seen_, deformed_seen_;
   bool begun_ = false, told_ = false;
   std::int64_t incomplete_ = 0;

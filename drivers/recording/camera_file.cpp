@@ -1,9 +1,6 @@
 #include "drivers/recording/camera_file.hpp"
 
-#define TOML_EXCEPTIONS 0
-#define TOML_HEADER_ONLY 1
 #include <fmt/core.h>
-#include <toml++/toml.h>
 
 #include <array>
 #include <cmath>
@@ -12,7 +9,7 @@
 
 #include "drivers/common/nearest_word.hpp"
 #include "drivers/common/printable.hpp"
-#include "drivers/common/toml_guard.hpp"
+#include "drivers/common/toml_text.hpp"
 #include "drivers/recording/text_file.hpp"
 
 namespace pliant {
@@ -58,9 +55,6 @@ class Reader {
     return {ErrorKind::bad_input,
             fmt::format("{}:{}:{}: {}", name_, where.begin.line, where.begin.column, what)};
   }
-  [[nodiscard]] Error at(const TextPlace& where, std::string_view what) const {
-    return {ErrorKind::bad_input, fmt::format("{}:{}:{}: {}", name_, where.line, where.column, what)};
-  }
   [[nodiscard]] Error of_file(std::string_view what) const {
     return {ErrorKind::bad_input, fmt::format("{}: {}", name_, what)};
   }
@@ -82,10 +76,8 @@ class Reader {
 
 Result<CameraFile> parse_camera(std::string_view text, std::string_view name) {
   const Reader reader(name);
-  if (const std::optional<TextPlace> stray = stray_character(text))
-    return reader.at(*stray, "not valid TOML: a character beyond ASCII outside quotes");
-  const toml::parse_result parsed = toml::parse(text, name);
-  if (!parsed) return reader.at(parsed.error().source(), printable(parsed.error().description()));
+  const Result<toml::table> parsed = parse_toml(text, name);
+  if (!parsed) return parsed.error();
 
   CameraFile camera;
   Intrinsics& c = camera.intrinsics;
@@ -104,7 +96,7 @@ Result<CameraFile> parse_camera(std::string_view text, std::string_view name) {
                                         {"noise_growth", &s.noise_growth, 0, 0.1},
                                         {"near_limit", &s.near_limit, 0.05, 4},
                                         {"far_limit", &s.far_limit, 0.2, 8}}};
-  const toml::table& root = parsed.table();
+  const toml::table& root = *parsed;
   if (Outcome taken = reader.take(root, camera_keys, "sensor"); !taken) return taken.error();
   if (const toml::table* sensor = root["sensor"].as_table())
     if (Outcome taken = reader.take(*sensor, sensor_keys, ""); !taken) return taken.error();

@@ -5,11 +5,8 @@
 
 #include "drivers/common/nearest_word.hpp"
 #include "drivers/common/printable.hpp"
-#include "drivers/common/toml_guard.hpp"
+#include "drivers/common/toml_text.hpp"
 #include "firmware-app/config/settings_table.hpp"
-
-#define TOML_EXCEPTIONS 0
-#include <toml++/toml.h>
 
 namespace pliant {
 
@@ -111,16 +108,10 @@ Outcome assign(const toml::node& node, const toml::source_region& where, std::st
 Outcome parse_settings(std::string_view text, std::string_view name, std::span<const Setting> settings) {
   if (text.size() > kMaxSettingsText)
     return Error{ErrorKind::bad_input, fmt::format("{} is longer than 1 MB", name)};
-  if (const std::optional<TextPlace> stray = stray_character(text))
-    return Error{ErrorKind::bad_input,
-                 fmt::format("{}:{}:{}: not valid TOML: a character beyond ASCII outside quotes", name,
-                             stray->line, stray->column)};
-  const toml::parse_result parsed = toml::parse(text);
-  if (!parsed)
-    return error_at(name, parsed.error().source(),
-                    fmt::format("not valid TOML: {}", printable(parsed.error().description())));
+  const Result<toml::table> parsed = parse_toml(text, name);
+  if (!parsed) return parsed.error();
 
-  for (const auto& [key, node] : parsed.table()) {
+  for (const auto& [key, node] : *parsed) {
     bool is_table = false;
     for (const Setting& s : settings) is_table = is_table || (!s.table.empty() && s.table == key.str());
     if (!is_table || node.as_table() == nullptr) {

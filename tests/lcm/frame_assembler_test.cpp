@@ -71,6 +71,49 @@ TEST(FrameAssembler, AFrameWithAPartMissingIsGivenUpForTheNext) {
   EXPECT_TRUE(assembler.frame().strain.empty());
 }
 
+TEST(FrameAssembler, PartsMayComeInAnyOrderAndTwice) {
+  SampleResult sample(16000, 3);
+  TrackMessages messages(sample.rest, kSampleModelId);
+  FrameAssembler straight, turned;
+  const auto bodies = messages.encode(sample.result);
+  ASSERT_GT(bodies.size(), 3U);
+  std::vector<MessageBody> backwards{bodies[1]};
+  for (std::size_t i = bodies.size(); i-- > 0;) backwards.push_back(bodies[i]);
+  EXPECT_EQ(feed(straight, bodies), 1);
+  EXPECT_EQ(feed(turned, backwards), 1);
+  EXPECT_EQ(turned.frame().labels, straight.frame().labels);
+  EXPECT_EQ(turned.frame().deformed, straight.frame().deformed);
+  EXPECT_EQ(turned.frame().strain, straight.frame().strain);
+  EXPECT_EQ(turned.frame().position.size(), straight.frame().position.size());
+  EXPECT_EQ(turned.incomplete(), 0);
+}
+
+TEST(FrameAssembler, AFrameThatTellsAPointTwiceIsGivenUp) {
+  RegionsMessage regions;
+  regions.state = TrackState::tracking;
+  DeformedMessage deformed;
+  deformed.parts = 2;
+  deformed.index = {3, 5};
+  deformed.position.resize(2);
+  deformed.displacement.resize(2);
+  deformed.strain.resize(2);
+  FrameAssembler assembler;
+  EXPECT_FALSE(assembler.take(regions));
+  EXPECT_FALSE(assembler.take(deformed));
+  deformed.part = 1;
+  EXPECT_FALSE(assembler.take(deformed));
+  EXPECT_EQ(assembler.incomplete(), 1);
+  regions.frame = deformed.frame = 1;
+  deformed.part = 0;
+  EXPECT_FALSE(assembler.take(regions));
+  EXPECT_FALSE(assembler.take(deformed));
+  deformed.part = 1;
+  deformed.index = {1, 9};
+  EXPECT_TRUE(assembler.take(deformed));
+  EXPECT_EQ(assembler.frame().deformed, (std::vector<std::int16_t>{1, 3, 5, 9}));
+  EXPECT_EQ(assembler.incomplete(), 1);
+}
+
 TEST(FrameAssembler, PointsArePlacedByTheirRegionOrByThemselves) {
   SampleResult sample(1000, 10);
   TrackMessages messages(sample.rest, kSampleModelId);
