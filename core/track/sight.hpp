@@ -47,7 +47,7 @@ class Sighting {
   }
 
  private:
-  static constexpr std::int32_t kLeastFacing = 1638;  // cosine 0.1, Q14
+  static constexpr std::int32_t kLeastFacing = 0;
 
   bool try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept;
 
