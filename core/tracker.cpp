@@ -125,7 +125,7 @@ const char* Tracker::start(const ModelView& model, const Intrinsics& camera, con
   s->sensor = sensor;
   s->settings = settings;
   s->tables.start(s->model);
-  s->surface.start(camera, sensor, settings.kernels);
+  s->surface.start(camera, sensor, settings.kernels, settings.steps.input_filter);
   s->projector.start(camera);
   s->tolerance = {&s->surface, s->tables.spacing};
   s->patches.start(s->tables, s->points.queue);

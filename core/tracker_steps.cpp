@@ -45,6 +45,7 @@ void round_of_alignment(TrackerState& s, std::size_t points, std::int32_t gate, 
   finish_stage(s, Stage::associate);
   AlignSettings align_settings = base;
   align_settings.widest = widest;
+  align_settings.robust = s.settings.steps.robust_weights;
   align(s.surface, align_settings, find_joints(s.patches, s.warp, s.regions), s.points, s.regions);
   finish_stage(s, Stage::align);
 }
@@ -111,7 +112,9 @@ void warp_surface(TrackerState& s) noexcept {
 void label_points(TrackerState& s) noexcept {
   const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
   settle_undecided(s.tables, sighting, s.regions, s.tolerance, s.points);
-  s.counts = label({s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance}, s.regions, s.points);
+  s.counts = label(
+      {s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance, s.settings.steps.temporal_evidence},
+      s.regions, s.points);
 }
 
 void regroup_outliers(TrackerState& s) noexcept {
@@ -119,8 +122,8 @@ void regroup_outliers(TrackerState& s) noexcept {
   settings.max_regions = s.settings.max_regions;
   settings.fewest_points = fewest_region_points(s);
   const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
-  if (regroup({s.tables, s.patches, s.warp, sighting, s.tolerance}, settings, s.regroup_state, s.regions,
-              s.points))
+  if (s.settings.steps.merge_and_split && regroup({s.tables, s.patches, s.warp, sighting, s.tolerance},
+                                                  settings, s.regroup_state, s.regions, s.points))
     carry_homes_to_unseen(s.tables, s.points);
   count_regions(s);
   for (TrackedRegion& region : s.regions) {

@@ -20,6 +20,11 @@ std::size_t round_up(std::size_t n) noexcept {
   return (n + kRowSlack - 1) / kRowSlack * kRowSlack;
 }
 
+void pass(const std::uint16_t* /*above*/, const std::uint16_t* row, const std::uint16_t* /*below*/,
+          std::uint16_t* out, std::size_t count, const DiscontinuityRule& /*rule*/) noexcept {
+  std::memcpy(out, row, count * sizeof(std::uint16_t));
+}
+
 void clear(std::uint16_t* from, std::size_t count) noexcept {
   std::memset(from, 0, count * sizeof(std::uint16_t));
 }
@@ -37,11 +42,13 @@ void Surface::lay_out(Workspace& workspace, const Intrinsics& camera) noexcept {
   sigma_ = workspace.take<std::int32_t>(kDepthTableSize);
 }
 
-void Surface::start(const Intrinsics& camera, const SensorDescription& sensor, Kernels kernels) noexcept {
+void Surface::start(const Intrinsics& camera, const SensorDescription& sensor, Kernels kernels,
+                    bool filtered) noexcept {
   camera_ = camera;
   width_ = camera.width;
   height_ = camera.height;
   rows_ = surface_rows(simd_body(kernels));
+  if (!filtered) rows_.clean = rows_.smooth = pass;
   scale_ = DepthScale(camera, sensor);
   rule_ = DiscontinuityRule(camera, sensor);
   focal_x_ = static_cast<std::int32_t>(camera.fx * 256 + 0.5);

@@ -44,9 +44,10 @@ class Surface {
  public:
   /// Takes what a camera of this size needs.
   void lay_out(Workspace& workspace, const Intrinsics& camera) noexcept;
-  /// Fills the tables; after lay_out() on a real workspace.
-  void start(const Intrinsics& camera, const SensorDescription& sensor,
-             Kernels kernels = Kernels::automatic) noexcept;
+  /// Fills the tables; after lay_out() on a real workspace. Without `filtered`, build() neither cleans nor
+  /// smooths.
+  void start(const Intrinsics& camera, const SensorDescription& sensor, Kernels kernels = Kernels::automatic,
+             bool filtered = true) noexcept;
 
   /// Cleans and smooths `window` of `frame` (clipped to the picture):
   /// readings outside the sensor's range go; a reading with fewer than kMinSupport of its eight neighbours at

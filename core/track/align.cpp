@@ -13,14 +13,17 @@ namespace pliant {
 
 namespace {
 
+constexpr std::int32_t kFullWeight = 256;  // Q8
+
 /// The weighted rows of region `k` about `centre`: the integer kernel of the step, on its own so that it can
 /// be looked at.
 [[gnu::noinline]] PlaneMoments region_moments(std::span<const Correspondence> all, std::int8_t k,
-                                              const IntPoint& centre, std::int32_t limit) noexcept {
+                                              const IntPoint& centre, std::int32_t limit,
+                                              bool robust) noexcept {
   PlaneMoments moments;
   for (const Correspondence& c : all) {
     if (c.region != k) continue;
-    const std::int32_t w = tukey_weight(c.residual, limit);
+    const std::int32_t w = robust ? tukey_weight(c.residual, limit) : kFullWeight;
     if (w == 0) continue;
     add_plane_row(moments, c.point, {c.nx, c.ny, c.nz}, c.residual, w, centre);
   }
@@ -63,7 +66,8 @@ void align(const Surface& surface, const AlignSettings& settings, const Joints& 
     const std::int32_t limit =
         std::clamp((region.scale * 300) >> 6, narrowest, std::max(settings.widest, narrowest)) * 16;
 
-    const PlaneMoments moments = region_moments(all, static_cast<std::int8_t>(k), centre, limit);
+    const PlaneMoments moments =
+        region_moments(all, static_cast<std::int8_t>(k), centre, limit, settings.robust);
     if (moments.rows < kFewestCorrespondences) continue;
 
     PlaneEquations equations = plane_equations(moments);

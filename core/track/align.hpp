@@ -12,6 +12,7 @@ struct AlignSettings {
   double prior_rotation =
       0.05;  ///< how far a region turns off its prediction, one standard deviation, radians
   double prior_translation = 0.01;  ///< and moves, metres
+  bool robust = true;               ///< Tukey weights; else equal ones up to their limit
 };
 
 /// One Gauss–Newton step for every region with correspondences: Tukey weights at a scale from the median

@@ -35,7 +35,8 @@ HomeCounts homes_around(const ModelTables& model, const PointState& points, std:
 /// not scattered points.
 bool consider_rivals(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
                      const std::array<FixedPose, limits::kMaxRegions>& poses, std::int32_t limit,
-                     const Sighting::Look& own, PointState& points, std::size_t i) noexcept {
+                     const Sighting::Look& own, std::uint8_t enough, PointState& points,
+                     std::size_t i) noexcept {
   const HomeCounts around = homes_around(model, points, i);
   const auto home = static_cast<std::size_t>(points.home[i]);
   const std::int32_t own_cost = own.sight == Sight::agrees ? std::abs(own.residual) : 2 * limit;
@@ -59,7 +60,7 @@ bool consider_rivals(const ModelTables& model, const RegionSet& regions, const S
     points.switching[i] = 0;
   }
   raise(points.switching[i], std::min(best_gain, 8), kSwitchAt);
-  if (points.switching[i] < kSwitchAt) return false;
+  if (points.switching[i] < enough) return false;
   points.home[i] = best;
   points.switching[i] = 0;
   points.rival[i] = -1;
@@ -148,12 +149,14 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
     ++alive;
   }
   const Sighting sighting(model, context.surface, context.projector, context.tolerance);
+  const std::uint8_t enough_to_switch = context.with_memory ? kSwitchAt : std::uint8_t{1};
   SightCounts counts;
   points.frames = std::min(points.frames + 1, kMisfitFirstFrames + 1);
   for (std::size_t i = 0; i < model.size; ++i) {
     Sighting::Look look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
     const std::int32_t limit = context.tolerance.deformed(look.point.z);
-    if (alive > 1 && consider_rivals(model, regions, sighting, poses, limit, look, points, i))
+    if (alive > 1 &&
+        consider_rivals(model, regions, sighting, poses, limit, look, enough_to_switch, points, i))
       look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
     if (alive > 1 && look.sight == Sight::none)
       carry_where_allowed(model, regions, sighting, poses, points, i);
@@ -173,6 +176,7 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
     } else if (points.evidence[i] < kEvidenceDeformed) {
       raise(points.evidence[i], -1, kEvidenceMax);
     }
+    if (!context.with_memory) points.evidence[i] = verdict.off ? kEvidenceMax : std::uint8_t{0};
     const bool off = points.evidence[i] >= kEvidenceDeformed;
     if (off && (sight == Sight::agrees || sight == Sight::in_front)) {
       points.label[i] = kDeformed;

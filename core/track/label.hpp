@@ -23,6 +23,7 @@ struct LabelContext {
   const Surface& surface;
   const Projector& projector;
   const Tolerance& tolerance;
+  bool with_memory = true;  ///< evidence gathers over frames; else one frame decides
 };
 
 /// Looks at every point where its region puts it and, where that fails or the warp takes it elsewhere, where
