@@ -1,0 +1,137 @@
+// Pliant's tracker beside PCL's projective ICP on the same recording, frame by frame in turn, one thread
+// each:
+//   compare_following RECORDING
+// Both begin at the pose of RECORDING/groundtruth.txt in its first frame. Prints a row: processor time of a
+// frame, median, and how far the base is off that truth, median.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "core/tracker.hpp"
+#include "drivers/recording/pose_list.hpp"
+#include "drivers/recording/recording.hpp"
+#include "tests/accuracy/registration_runs.hpp"
+#include "tests/peer/pcl_tracking.hpp"
+
+namespace pliant {
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+struct Column {
+  std::vector<double> ms, degrees, millimetres;
+
+  void add(double took, const RigidTransform& pose, const RigidTransform& truth, const Vector3& centre) {
+    ms.push_back(took);
+    degrees.push_back(degrees_between(pose.rotation, truth.rotation));
+    millimetres.push_back(1e3 * (pose * centre - truth * centre).norm());
+  }
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{:.2f} | {:.2f}° {:.2f} mm", median(ms), median(degrees), median(millimetres));
+  }
+};
+
+peer::Points plain(std::span<const Point3f> points) {
+  peer::Points out;
+  for (const Point3f& p : points) out.push_back({p.x, p.y, p.z});
+  return out;
+}
+
+std::array<double, 16> rows_of(const RigidTransform& pose) {
+  std::array<double, 16> out{};
+  out[15] = 1;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      out[static_cast<std::size_t>(4 * row + column)] = pose.rotation(row, column);
+    out[static_cast<std::size_t>(4 * row + 3)] = pose.translation[row];
+  }
+  return out;
+}
+
+RigidTransform transform_of(const std::array<double, 16>& rows) {
+  RigidTransform pose;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      pose.rotation(row, column) = rows[static_cast<std::size_t>(4 * row + column)];
+    pose.translation[row] = rows[static_cast<std::size_t>(4 * row + 3)];
+  }
+  return pose;
+}
+
+int fail(const std::string& why) {
+  std::fprintf(stderr, "compare_following: %s\n", why.c_str());
+  return 2;
+}
+
+int compare(const std::filesystem::path& recording) {
+  auto source = open_recording(recording);
+  if (!source) return fail(source.error().message);
+  const auto truth = read_pose_list((recording / "groundtruth.txt").string());
+  if (!truth || truth->empty()) return fail("no groundtruth.txt in " + recording.string());
+  const BuiltFromFile model(recording / "model.ply");
+  if (!model.good) return fail("no model.ply in " + recording.string());
+  const Intrinsics& camera = (*source)->intrinsics();
+  const TrackSettings settings;
+  const AlignedBlock block(Tracker::workspace_bytes(model.view, camera, settings));
+  Tracker tracker;
+  if (const char* fault = tracker.start(model.view, camera, (*source)->sensor(), settings, block.bytes))
+    return fail(fault);
+  tracker.start_from((*truth)[0].transform());
+
+  peer::Points normals;
+  for (std::size_t i = 0; i < model.view.size(); ++i) {
+    const auto n = model.view.normals()[i];
+    constexpr float kUnit = 1 / 16384.0F;
+    normals.push_back(
+        {static_cast<float>(n.x) * kUnit, static_cast<float>(n.y) * kUnit, static_cast<float>(n.z) * kUnit});
+  }
+  peer::PclTracker half(plain(model.view.positions()), normals, 2),
+      full(plain(model.view.positions()), normals, 1);
+  half.start_from(rows_of((*truth)[0].transform()));
+  full.start_from(rows_of((*truth)[0].transform()));
+
+  Column ours, of_half, of_full;
+  SourceItem item;
+  std::size_t frame = 0;
+  for ((*source)->next(1000, item); item.event != SourceEvent::end && frame < truth->size();
+       (*source)->next(1000, item)) {
+    if (item.event != SourceEvent::frame) continue;
+    const RigidTransform true_pose = (*truth)[frame++].transform();
+    const peer::Picture picture{
+        item.frame.depth,  camera.width, camera.height, static_cast<int>(item.frame.stride),
+        camera.fx,         camera.fy,    camera.cx,     camera.cy,
+        camera.depth_scale};
+    double start = thread_ms();
+    const TrackResult& result = tracker.process(item.frame);
+    double took = thread_ms() - start;
+    if (result.state == TrackState::tracking) ours.add(took, result.pose, true_pose, model.view.centre());
+    for (auto& [peer_tracker, column] : {std::pair{&half, &of_half}, std::pair{&full, &of_full}}) {
+      start = thread_ms();
+      const RigidTransform pose = transform_of(peer_tracker->process(picture));
+      took = thread_ms() - start;
+      column->add(took, pose, true_pose, model.view.centre());
+    }
+  }
+  fmt::print("| {} ({} points) | {} | {} | {:.1f}× | {} | {:.1f}× |\n", recording.filename().string(),
+             model.view.size(), ours.text(), of_half.text(), median(of_half.ms) / median(ours.ms),
+             of_full.text(), median(of_full.ms) / median(ours.ms));
+  return 0;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: compare_following RECORDING\n", stderr);
+    return 2;
+  }
+  return pliant::compare(argv[1]);
+}
