@@ -68,6 +68,11 @@ TEST_F(Align, IsNotDraggedByADent) {
   scene().align_rounds(12, 24);
   EXPECT_LT(degrees_between(scene().regions[0].pose.rotation, pose.rotation), 1.0);
   EXPECT_LT(millimetres(scene().regions[0].pose), 2.0);
+  // Equal weights are.
+  const double robust = millimetres(scene().regions[0].pose);
+  scene().place(moved(pose, 0.004, 0.02, 2));
+  scene().align_rounds(12, 24, false);
+  EXPECT_GT(millimetres(scene().regions[0].pose), robust);
 }
 
 TEST_F(Align, IsNotDraggedByAnOccluder) {

@@ -28,9 +28,9 @@ class Label : public ::testing::Test {
     for (const std::int8_t l : scene().points.label) ++count[l];
     return count;
   }
-  SightCounts frames(int count) {
+  SightCounts frames(int count, bool with_memory = true) {
     SightCounts counts;
-    for (int i = 0; i < count; ++i) counts = scene().label_now();
+    for (int i = 0; i < count; ++i) counts = scene().label_now(with_memory);
     return counts;
   }
 
@@ -90,7 +90,10 @@ TEST_F(Label, WhatTheCameraSeesThroughIsDeformedAfterClearEvidence) {
   const SightCounts first = frames(1);
   EXPECT_GT(first.in_front, first.facing / 12);
   EXPECT_EQ(labels().count(kDeformed), 0U);  // one frame is no evidence
-  frames(3);
+  frames(1, false);
+  EXPECT_GT(labels().at(kDeformed), first.in_front / 2) << "without memory it is";
+  scene().points.reset();
+  frames(4);
   const auto count = labels();
   ASSERT_EQ(count.count(kDeformed), 1U);
   EXPECT_GT(count.at(kDeformed), first.in_front / 2);
@@ -161,7 +164,10 @@ TEST_F(Label, ALookTellsFrontFromBehind) {
       if (!look.facing) continue;
       ++facing;
       ASSERT_EQ(look.sight, z < 0.9 ? Sight::in_front : Sight::behind);
-      ASSERT_EQ(look.residual > 0, z > 0.9);
+      // Along a normal that is almost square to the line of sight, rounding decides.
+      if (faces_camera(look.point, look.normal, 164)) {
+        ASSERT_EQ(look.residual > 0, z > 0.9);
+      }
     }
     EXPECT_GT(facing, 500U);
   }

@@ -143,6 +143,17 @@ TEST(Surface, RemovesFlyingPixelsAndKeepsEdges) {
   EXPECT_LT(degrees(n, {0, 0, -1}), 1.0);
 }
 
+TEST(Surface, LeavesReadingsAsTheyAreWithoutTheFilter) {
+  Picture picture(synthetic::small_camera());
+  picture.wall(1.2);
+  picture.block(50, 50, 51, 51, 0.7);  // a speck
+  Observed o;
+  o.surface.start(synthetic::small_camera(), {}, Kernels::automatic, false);
+  o.build(picture);
+  EXPECT_EQ(o.surface.depth(50, 50), 5600);
+  EXPECT_EQ(o.surface.depth(51, 50), 9600);
+}
+
 TEST(Surface, LowersNoiseByAThird) {
   Picture picture(synthetic::small_camera());
   picture.wall(0.8);

@@ -48,22 +48,23 @@ class TrackScene {
     see(picture);
   }
   /// `rounds` of association and alignment, the gate (millimetres) shrinking by a fifth each.
-  void align_rounds(int rounds, int gate) {
+  void align_rounds(int rounds, int gate, bool robust = true) {
     for (int i = 0; i < rounds; ++i, gate = std::max(gate * 4 / 5, 8))
-      align_once(gate * kUnitsPerMillimetre, gate * kUnitsPerMillimetre);
+      align_once(gate * kUnitsPerMillimetre, gate * kUnitsPerMillimetre, robust);
   }
   /// The last rounds of a frame: only what fits within half of the inlier limit counts.
   void align_tightly() {
     const std::int32_t limit = tolerance.deformed(depth_of(regions[0].pose, tables.centre));
     for (int i = 0; i < 2; ++i) align_once(3 * limit, limit / 2);
   }
-  void align_once(std::int32_t gate, std::int32_t widest) {
+  void align_once(std::int32_t gate, std::int32_t widest, bool robust = true) {
     AssociateSettings associate_settings;
     associate_settings.points = tables.size;
     associate_settings.gate = gate;
     associate(tables, surface, projector, regions, associate_settings, points);
     AlignSettings align_settings;
     align_settings.widest = widest;
+    align_settings.robust = robust;
     align(surface, align_settings, {}, points, regions);
   }
   static WarpSettings warp_settings() {
@@ -76,14 +77,14 @@ class TrackScene {
     warp_patches(tables, patches, surface, projector, tolerance, regions, settings, points, *warp);
   }
   /// With a surface that the base region alone moves.
-  SightCounts label_now() {
+  SightCounts label_now(bool with_memory = true) {
     warp->reset(regions[0].pose);
     for (FixedPose& fixed : warp->fixed) fixed = FixedPose(regions[0].pose, tables.centre);
-    return look_now();
+    return look_now(with_memory);
   }
   /// With the surface where the warp has it.
-  SightCounts look_now() {
-    return label({tables, patches, *warp, surface, projector, tolerance}, regions, points);
+  SightCounts look_now(bool with_memory = true) {
+    return label({tables, patches, *warp, surface, projector, tolerance, with_memory}, regions, points);
   }
   [[nodiscard]] Vector3 rest(std::size_t i) const {
     const Point3f& p = model.positions()[i];
