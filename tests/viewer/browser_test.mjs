@@ -174,7 +174,7 @@ test("shows the object, the depth and numbers that change", async () => {
   await until("the device", async () => /streaming/.test(await page.textContent("#numbers")));
   assert.match(await page.textContent("#regions"), /base\d+ points, rms/);
   assert.match(await page.textContent("#stage-key"), /surface.*total/);
-  await until("the legend", async () => /points deformed/.test(await page.textContent("#legend")));
+  await until("the legend", async () => /points? deformed/.test(await page.textContent("#legend")));
   await until("three curves", () => page.evaluate(() => [...document.querySelectorAll(".plot")].every((plot) => {
     const { data } = plot.getContext("2d").getImageData(0, 0, plot.width, plot.height);
     return data.some((value, i) => i % 4 === 3 && value > 0);
@@ -342,8 +342,8 @@ test("browsers that ask and never read slow nobody and cost nothing", async (t) 
   const earlier = resident(viewer.pid);
   let tried;
   // The machine's other work comes and goes: a slow round beside quick ones is none of theirs unless it comes again.
-  for (let round = 0; round < 3; ++round) {
-    const before = await secondsFor(20);
+  for (let round = 0; round < 5; ++round) {
+    const before = await secondsFor(12);
     const sockets = [];
     t.after(() => sockets.forEach((socket) => socket.destroy()));
     for (let i = 0; i < 4; ++i) {
@@ -360,13 +360,13 @@ test("browsers that ask and never read slow nobody and cost nothing", async (t) 
       sockets.push(socket);
     }
     await until("answers that nobody takes", () => stuck(sockets));
-    const beside = await secondsFor(20);
+    const beside = await secondsFor(12);
     const still = await stuck(sockets);
     const grown = resident(viewer.pid) - earlier;
     assert.ok(grown < 8e6, `the server grew by ${grown} bytes`);
     for (const socket of sockets) socket.destroy();
-    const after = await secondsFor(20);
-    tried = `20 frames took ${before.toFixed(1)} s, ${beside.toFixed(1)} s beside them (still stuck: ${still}), ${after.toFixed(1)} s again`;
+    const after = await secondsFor(12);
+    tried = `12 frames took ${before.toFixed(1)} s, ${beside.toFixed(1)} s beside them (still stuck: ${still}), ${after.toFixed(1)} s again`;
     t.diagnostic(tried);
     if (still && beside < 2 * Math.max(before, after)) return;
   }
