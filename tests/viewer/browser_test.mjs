@@ -148,7 +148,7 @@ test("says what is missing, and the names of other trackers that are there", asy
   const page = await openPage();
   await until("the notice", async () => (await page.isVisible("#notice")) &&
     (await page.textContent("#notice")).includes("Nothing is published on PLIANT_*"));
-  assert.match(await page.textContent("#notice"), /pliant run --source simulated:cushion --pace realtime/);
+  assert.match(await page.textContent("#notice"), /pliant run --source 'simulated:cushion\?frames=100000' --pace realtime/);
   assert.match(await page.textContent("#notice"), /ttl=1/);
   const other = startTracker(otherConfig);
   await until("the other tracker's name", async () => (await page.textContent("#notice")).includes("--prefix OTHER"));
