@@ -1,5 +1,8 @@
 // Follows the object: prints where it is in each frame. follow_pose [URL] [PREFIX]
 // Only LCM and the class that lcm-gen makes of rigid_transform_t.lcm are needed.
+// Packages: g++, liblcm-dev, liblcm-bin.
+//   lcm-gen --cpp --cpp-hpath out/cpp drivers/lcm/types/*.lcm
+//   g++ -O2 -Iout/cpp firmware-app/examples/follow_pose.cpp -llcm -o out/follow_pose
 #include <cstdio>
 #include <exception>
 #include <lcm/lcm-cpp.hpp>

@@ -1,4 +1,5 @@
 // Lists the points that moved more than a threshold: list_deformed MILLIMETRES [URL] [PREFIX]
+// Compiled like follow_pose.cpp.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

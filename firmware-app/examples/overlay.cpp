@@ -1,6 +1,6 @@
 // Drives an overlay: draws the tracked points over a camera's picture, into an image file that is replaced
 // with each frame. overlay OUT.ppm WIDTH HEIGHT FX FY CX CY [URL] [PREFIX]; the camera as `pliant record`
-// writes it.
+// writes it. Compiled like follow_pose.cpp.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,6 @@
 // Prints what a tracker publishes: subscribe [URL] [PREFIX]. It uses LCM's own C++ interface and the classes
-// that lcm-gen makes of drivers/lcm/types, as any program outside this repository would.
+// that lcm-gen makes of drivers/lcm/types, as any program outside this repository would. Compiled like
+// follow_pose.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -16,6 +16,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLeft = 110, kRight = 250, kHead = 62, kRowHeight = 26, kFoot = 44;
 
+constexpr const char *kBarColour = "#56b4e9", *kSumColour = "#0072b2", *kP99Colour = "#d55e00",
+                     *kMaxColour = "#222";
+
 std::string time_text(double us) {
   return us >= 1000 ? fmt::format("{:.2f} ms", us / 1000) : fmt::format("{:.0f} \u00b5s", us);
 }
@@ -76,8 +79,9 @@ void draw_stats_plot(const StatsSummary& stats, std::string_view title, double t
     const double x = x_of(std::pow(10, decade));
     svg.line(x, top + kHead - 4, x, bottom + 4, "#ccc");
     svg.text(x, bottom + 20,
-             decade < 3 ? fmt::format("{:g} \u00b5s", std::pow(10, decade))
-                        : fmt::format("{:g} ms", std::pow(10, decade - 3)),
+             decade < 3   ? fmt::format("{:g} \u00b5s", std::pow(10, decade))
+             : decade < 6 ? fmt::format("{:g} ms", std::pow(10, decade - 3))
+                          : fmt::format("{:g} s", std::pow(10, decade - 6)),
              "middle", 12, "#555");
   }
   const auto column = [&](int number, double at, const std::string& words) {
@@ -86,13 +90,21 @@ void draw_stats_plot(const StatsSummary& stats, std::string_view title, double t
   column(1, top + kHead - 6, "median");
   column(2, top + kHead - 6, "p99");
   column(3, top + kHead - 6, "max");
+  // Each heading with its mark.
+  const auto mark_at = [](int number, double word_width) {
+    return kPlotWidth - kRight + 80 * number - word_width - 8;
+  };
+  const double mark_y = top + kHead - 10;
+  svg.box(mark_at(1, 44) - 12, mark_y - 5, 12, 10, kBarColour);
+  svg.line(mark_at(2, 24), mark_y - 7, mark_at(2, 24), mark_y + 7, kP99Colour, 3);
+  svg.circle(mark_at(3, 27), mark_y, 3.5, kMaxColour);
   double y = top + kHead;
   for (const StageBar& bar : stats.bars) {
     const bool sum = bar.name == "total" || bar.name == "latency";
     svg.text(kLeft - 8, y + 17, bar.name, "end");
-    svg.box(kLeft, y + 5, x_of(bar.median_us) - kLeft, kRowHeight - 10, sum ? "#0072b2" : "#56b4e9");
-    svg.line(x_of(bar.p99_us), y + 3, x_of(bar.p99_us), y + kRowHeight - 3, "#d55e00", 3);
-    svg.circle(x_of(bar.max_us), y + kRowHeight / 2, 3.5, "#222");
+    svg.box(kLeft, y + 5, x_of(bar.median_us) - kLeft, kRowHeight - 10, sum ? kSumColour : kBarColour);
+    svg.line(x_of(bar.p99_us), y + 3, x_of(bar.p99_us), y + kRowHeight - 3, kP99Colour, 3);
+    svg.circle(x_of(bar.max_us), y + kRowHeight / 2, 3.5, kMaxColour);
     column(1, y + 17, time_text(bar.median_us));
     column(2, y + 17, time_text(bar.p99_us));
     column(3, y + 17, time_text(bar.max_us));

@@ -28,6 +28,7 @@ void TrackingLoop::run(RunFigures& figures) {
   std::int64_t end_ns = 0;
   std::optional<PathWatch> watch(std::in_place, parts_.cost);
   last_status_ns_ = monotonic_ns();
+  rate_ = FrameRate(last_status_ns_);
   while (!parts_.ring.ended()) {
     const CapturedFrame* captured = parts_.ring.pop(kIdleMs);
     if (captured == nullptr) {
@@ -150,7 +151,6 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   const SendCounters sent = parts_.publisher->counters();
   std::array<char, 256> fault{};
   parts_.capture.copy_fault(fault);
-  const double seconds = static_cast<double>(now - last_status_ns_) * 1e-9;
 
   StatusContent status;
   status.utime = clock_us(CLOCK_REALTIME);
@@ -160,9 +160,7 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   status.frame = last_frame_;
   status.state = figures.last_state;
   fill_device(status);
-  status.rate = seconds > 0
-                    ? static_cast<float>(static_cast<double>(figures.frames() - frames_at_status_) / seconds)
-                    : 0.0F;
+  status.rate = static_cast<float>(rate_.update(now, figures.frames()));
   if (status.state == TrackState::tracking) status.strain_energy = figures.last_strain_energy;
   status.latency_median_us = microseconds(latency[0]);
   status.latency_p99_us = microseconds(latency[1]);
@@ -188,7 +186,6 @@ void TrackingLoop::publish_status(const RunFigures& figures) {
   told_blind_ = parts_.capture.monitor() == nullptr || parts_.capture.monitor()->blind();
   recent_.clear();
   last_status_ns_ = now;
-  frames_at_status_ = figures.frames();
 }
 
 }  // namespace pliant

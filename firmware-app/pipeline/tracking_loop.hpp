@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/tracker.hpp"
+#include "firmware-app/measure/frame_rate.hpp"
 #include "firmware-app/measure/latency_meter.hpp"
 #include "firmware-app/measure/path_cost.hpp"
 #include "firmware-app/outputs/frame_files.hpp"
@@ -67,7 +68,8 @@ class TrackingLoop {
   WorkController work_;
   StageProfile recent_;  // since the last status
   OutputHash hash_;
-  std::int64_t first_arrival_ns_ = 0, last_status_ns_ = 0, frames_at_status_ = 0;
+  std::int64_t first_arrival_ns_ = 0, last_status_ns_ = 0;
+  FrameRate rate_;
   std::int64_t last_frame_ = -1;
   DeviceState told_device_ = DeviceState::absent;  // by the last status
   StreamFault told_fault_ = StreamFault::none;

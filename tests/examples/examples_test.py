@@ -9,9 +9,10 @@ import time
 import unittest
 
 import languages
+import subscribers_beside
 
 options = languages.arguments()
-URL = "udpm://239.255.76.67:7667?ttl=0"
+URL = subscribers_beside.URL
 SOURCE = "simulated:cushion?width=320&height=240&frames=135"
 THRESHOLD = 3.0  # millimetres
 
@@ -56,7 +57,8 @@ class Examples(unittest.TestCase):
                 outputs[example] = open(folder / f"{example}.txt", "w+")
                 running.append(subprocess.Popen(languages.command(options, example, class_path) + rest,
                                                 stdout=outputs[example]))
-            time.sleep(3 if options.language == "java" else 1)
+            subscribers_beside.wait_for_subscribers(len(running))
+            time.sleep(0.5)
             run = subprocess.run([options.pliant, "run", "--source", SOURCE, "--pace", "realtime", "--lcm-url", URL,
                                   "--trajectory", folder / "path.txt", "--points", folder / "points"],
                                  capture_output=True, text=True)

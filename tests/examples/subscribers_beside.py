@@ -14,6 +14,18 @@ GROUP, PORT = "239.255.76.67", 7667
 URL = f"udpm://{GROUP}:{PORT}?ttl=0"
 
 
+def wait_for_subscribers(count):
+    """Until as many sockets as that listen on the port: a busy machine starts programs late."""
+    end = time.monotonic() + 120
+    while True:
+        tables = [pathlib.Path(f"/proc/net/{name}") for name in ("udp", "udp6")]
+        lines = [line for table in tables if table.exists() for line in table.read_text().splitlines()[1:]]
+        if sum(line.split()[1].endswith(f":{PORT:04X}") for line in lines) >= count:
+            return
+        assert time.monotonic() < end, f"there are not {count} subscribers"
+        time.sleep(0.05)
+
+
 def joined_socket():
     """A socket in the group that nobody reads."""
     silent = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -27,6 +39,7 @@ def joined_socket():
 def ailing_subscribers(program, kill_after):
     """`program` is a subscriber that takes the URL; one of two is stopped at once, the other killed after some seconds."""
     running = [subprocess.Popen([program, URL], stdout=subprocess.DEVNULL) for _ in range(2)]
+    wait_for_subscribers(2)
     silent = joined_socket()
     time.sleep(0.5)
     running[0].send_signal(signal.SIGSTOP)

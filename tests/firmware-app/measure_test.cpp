@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "firmware-app/measure/clock.hpp"
+#include "firmware-app/measure/frame_rate.hpp"
 #include "firmware-app/measure/histogram.hpp"
 #include "firmware-app/measure/latency_meter.hpp"
 #include "firmware-app/measure/path_cost.hpp"
@@ -111,6 +112,16 @@ TEST(PathWatch, CountsPageFaults) {
     for (std::size_t i = 0; i < bytes; i += 4096) block[i] = 1;
   }
   EXPECT_GT(cost.page_faults.load(), 0U);
+}
+
+TEST(FrameRate, IsNeverToldFromAMoment) {
+  constexpr std::int64_t kMs = 1'000'000;
+  FrameRate rate(7000 * kMs);
+  EXPECT_EQ(rate.update(7002 * kMs, 1), 0) << "one frame in two milliseconds are no 500 a second";
+  EXPECT_DOUBLE_EQ(rate.update(8000 * kMs, 30), 30);
+  EXPECT_DOUBLE_EQ(rate.update(8001 * kMs, 31), 30) << "a state changed just after a status";
+  EXPECT_DOUBLE_EQ(rate.update(9000 * kMs, 45), 15);
+  EXPECT_DOUBLE_EQ(rate.update(11000 * kMs, 45), 0);
 }
 
 TEST(Memory, ResidentIsKnown) {

@@ -1,15 +1,15 @@
 #!/bin/bash
-# tests/fuzz/run.sh SECONDS [SEED]: runs every fuzz target of build/fuzz for its share of SECONDS, beginning with the
-# corpus in the repository. New inputs go to build/fuzz-corpus, findings to build/fuzz-crashes. Fails on the first
+# tests/fuzz/run.sh SECONDS [SEED]: runs every fuzz target of build/asan-ubsan for its share of SECONDS, beginning with
+# the corpus in the repository. New inputs go to build/fuzz-corpus, findings to build/fuzz-crashes. Fails on the first
 # finding. With a SEED each target gets a thousand inputs for every second of its share, the same in every run and on
 # every machine; without one they are new each time.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 seconds=${1:?usage: tests/fuzz/run.sh SECONDS [SEED]}
 seed=${2:-0}
-build=build/fuzz
+build=build/asan-ubsan
 mapfile -t programs < <(find "$build/tests/fuzz" -maxdepth 1 -type f -executable -name '*_fuzz' | sort)
-[ ${#programs[@]} -gt 0 ] || { echo "no fuzz target in $build: cmake --preset fuzz && cmake --build $build --target fuzzers" >&2; exit 1; }
+[ ${#programs[@]} -gt 0 ] || { echo "no fuzz target in $build: cmake --preset asan-ubsan && cmake --build $build --target fuzzers" >&2; exit 1; }
 share=$((seconds / ${#programs[@]} > 0 ? seconds / ${#programs[@]} : 1))
 limit="-max_total_time=$share"
 [ "$seed" = 0 ] || limit="-runs=$((share * 1000))"

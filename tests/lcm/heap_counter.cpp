@@ -4,6 +4,8 @@
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define PLIANT_COUNTS_HEAP 0
+#elif defined(__has_feature)
+#define PLIANT_COUNTS_HEAP (!__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer))
 #else
 #define PLIANT_COUNTS_HEAP 1
 #endif

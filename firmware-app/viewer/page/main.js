@@ -52,7 +52,7 @@ function missing() {
   if (performance.now() - frameHeard > 2500) {
     const lines = link.others.length > 0
       ? link.others.map((prefix) => `pliant view --prefix ${prefix}`)
-      : ["pliant run --source simulated:cushion --pace realtime"];
+      : ["pliant run --source 'simulated:cushion?frames=100000' --pace realtime"];
     const advice = link.others.length > 0 ? "Another tracker publishes here:" : "Start a tracker, for example:";
     // One on another machine is heard only where its messages may leave that machine.
     const remote = `A tracker on another machine publishes with: --lcm-url '${link.url.replace(/ttl=0/, "ttl=1")}'`;

@@ -2,6 +2,7 @@
 import { COLOURS, Plot } from "./plots.js";
 
 const byId = (id) => document.getElementById(id);
+const counted = (count, word) => `${count} ${word}${count === 1 ? "" : "s"}`;
 const megabytes = (bytes) => `${(bytes / 1e6).toFixed(1)} MB`;
 const css = ([red, green, blue]) => `rgb(${red} ${green} ${blue})`;
 
@@ -78,7 +79,7 @@ export class Panel {
       const name = document.createElement("span");
       if (model) name.append(swatch(css(model.palette[region.id + 2] ?? model.palette[2])));
       name.append(region.id === 0 ? "base" : `region ${region.id}`);
-      return row(name, `${region.points} points, rms ${(1000 * region.rms).toFixed(2)} mm`);
+      return row(name, `${counted(region.points, "point")}, rms ${(1000 * region.rms).toFixed(2)} mm`);
     }));
     if (frame.regions.length === 0) regions.replaceChildren(row("none", ""));
     const legend = byId("legend");
@@ -94,11 +95,11 @@ export class Panel {
       ends.append(end);
     }
     const unseen = document.createElement("div");
-    unseen.append(swatch(css(model.palette[0])), `${frame.not_observed} points not seen`);
+    unseen.append(swatch(css(model.palette[0])), `${counted(frame.not_observed, "point")} not seen`);
     const lacking = document.createElement("div");
     lacking.className = "lacking";
     lacking.textContent = note;
-    legend.replaceChildren(`${frame.deformed} points deformed, by displacement`, bar, ends, unseen, lacking);
+    legend.replaceChildren(`${counted(frame.deformed, "point")} deformed, by displacement`, bar, ends, unseen, lacking);
   }
 
   setStatus(status, now) {
