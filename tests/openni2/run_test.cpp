@@ -36,6 +36,8 @@ TEST_F(OpenNi2Run, TracksTheObjectThroughTheDevice) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_GE(stats()["tracked"].get<int>(), 40);
   EXPECT_EQ(stats()["bad_frames"], 0);
+  EXPECT_EQ(stats()["heap_calls_after_start"], 0);
+  EXPECT_EQ(stats()["page_faults_after_start"], 0);
   const std::vector<StatusMessage> told = statuses(at("log"));
   ASSERT_GE(told.size(), 3U);
   EXPECT_EQ(told.back().device, DeviceState::ended);

@@ -50,6 +50,24 @@ TEST_F(Bus, ListsWhatIsPluggedIn) {
   EXPECT_EQ(device.node(), "/dev/bus/usb/001/001");
   EXPECT_EQ(device.classes, std::vector<int>{255});
   EXPECT_TRUE(device.accessible);
+  EXPECT_FALSE(device.in_use);
+}
+
+TEST_F(Bus, KnowsThatAProgramHasADevice) {
+  plug();
+  GError* error = nullptr;
+  ASSERT_TRUE(umockdev_testbed_add_from_string(
+      testbed_,
+      "P: /devices/usb1/1-0:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\n"
+      "L: driver=../../../bus/usb/drivers/usbfs\n",
+      &error))
+      << error->message;
+  const auto bus = UsbBus::open();
+  ASSERT_TRUE(bus);
+  const auto devices = (*bus)->devices();
+  ASSERT_TRUE(devices);
+  ASSERT_EQ(devices->size(), 1U);
+  EXPECT_TRUE(devices->front().in_use) << devices->front().port;
 }
 
 TEST_F(Bus, TellsAtOnceWhatComesAndGoes) {
@@ -76,7 +94,10 @@ TEST_F(Bus, TellsAtOnceWhatComesAndGoes) {
 TEST_F(Bus, ResettingWhatIsNotThereIsAnError) {
   const auto bus = UsbBus::open();
   ASSERT_TRUE(bus);
-  const Outcome reset = (*bus)->reset(0x1d27, 0x0600);
+  UsbDevice gone;
+  gone.bus = 1;
+  gone.address = 9;
+  const Outcome reset = (*bus)->reset(gone);
   ASSERT_FALSE(reset);
   EXPECT_EQ(reset.error().kind, ErrorKind::absent);
 }

@@ -79,6 +79,7 @@ int FakeKernel::answer(unsigned long request, void* argument) {
       return 0;
     case VIDIOC_REQBUFS: {
       auto& wanted = *static_cast<v4l2_requestbuffers*>(argument);
+      if (used_elsewhere) return error(EBUSY);
       if (wanted.count > 0 && streaming_) return error(EBUSY);
       if (maps > 0) return error(EBUSY);  // as old kernels: buffers that are mapped cannot be freed
       if (wanted.count > 0) wanted.count = buffers_given;

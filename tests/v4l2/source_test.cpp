@@ -233,6 +233,36 @@ INSTANTIATE_TEST_SUITE_P(V4l2, FailureSweep,
                                                           EACCES),
                                           testing::Bool(), testing::Bool()));
 
+TEST(V4l2Listing, TellsNodesFaultsAndWhoIsBusy) {
+  for (const bool multi_planar : {false, true}) {
+    FakeKernel kernel;
+    kernel.multi_planar = multi_planar;
+    V4l2Listing listing = list_v4l2(kernel);
+    ASSERT_EQ(listing.nodes.size(), 1U);
+    EXPECT_EQ(listing.nodes.front().path, "/dev/video2");
+    EXPECT_EQ(listing.nodes.front().formats, kernel.formats);
+    EXPECT_FALSE(listing.nodes.front().busy);
+    ASSERT_EQ(listing.faults.size(), 1U) << "/dev/video0 is not there any more";
+    kernel.used_elsewhere = true;
+    listing = list_v4l2(kernel);
+    ASSERT_EQ(listing.nodes.size(), 1U);
+    EXPECT_TRUE(listing.nodes.front().busy);
+    EXPECT_EQ(kernel.open_files, 0);
+    kernel.used_elsewhere = false;
+    kernel.is_capture = false;
+    EXPECT_TRUE(list_v4l2(kernel).nodes.empty());
+  }
+}
+
+TEST(V4l2Listing, OpensNothingThatIsNoVideoDevice) {
+  for (const char* path : {"/dev/null", "/dev/zero", "/dev/tty", "/", "/etc/passwd"}) {
+    const auto source = open_v4l2({path, ""}, wish());
+    ASSERT_FALSE(source) << path;
+    EXPECT_EQ(source.error().kind, ErrorKind::bad_input) << path;
+    EXPECT_NE(source.error().message.find("is no video device"), std::string::npos) << source.error().message;
+  }
+}
+
 TEST(V4l2Address, IsAPathABusOrNothingAndAFormat) {
   EXPECT_EQ(parse_v4l2_address("/dev/video0?format=Y16")->format, "Y16");
   EXPECT_EQ(parse_v4l2_address("/dev/video0?format=Y16")->place, "/dev/video0");

@@ -105,6 +105,13 @@ TEST_F(UvcCameraTest, TheObjectIsFollowedAndFoundAgainAfterTheCableWasPulled) {
   printf("[          ] %.1f mm off its place in the median\n", 1000 * tracking.median_error());
   EXPECT_LT(tracking.median_error(), kMostError) << tracking.told();
 
+  // Who comes second is told so.
+  EXPECT_NE(run_pliant({"devices"}).out.find("another program uses it ('fuser /dev/video0' tells which)"),
+            std::string::npos);
+  expect_refused(
+      run_pliant({"record", "--source", kSource, "--sensor", at("sensor.toml"), "-o", at("second")}), 3,
+      {"/dev/video0", "another program uses it"});
+
   camera_.unplug();
   EXPECT_TRUE(tracking.until(5, [](const StatusMessage& status) {
     return status.device == DeviceState::absent;
@@ -125,6 +132,9 @@ TEST_F(UvcCameraTest, TheObjectIsFollowedAndFoundAgainAfterTheCableWasPulled) {
   EXPECT_TRUE(states.ends_with(" streaming")) << states;
   const Ended ended = tracking.stop();
   EXPECT_EQ(ended.code, 0) << ended.err;
+  const std::string stats = read_file(folder_ / "stats.json");
+  EXPECT_NE(stats.find("\"heap_calls_after_start\": 0,"), std::string::npos) << stats;
+  EXPECT_NE(stats.find("\"page_faults_after_start\": 0,"), std::string::npos) << stats;
 }
 
 }  // namespace
