@@ -55,13 +55,13 @@ void list_video(Lines& lines, UsbServed& served) {
     if (node.busy) served.busy_buses.push_back(node.bus);
     std::string formats;
     for (const std::uint32_t code : node.formats)
-      if (find_v4l2_format(code) != nullptr) formats += " " + fourcc_text(code);
+      if (find_v4l2_format(code) != nullptr) formats.append(1, ' ').append(fourcc_text(code));
     const std::string what = fmt::format("v4l2:{}  {}, {},{}", node.path, node.card, node.bus, formats);
     if (node.busy)
       lines.hindered +=
           fmt::format("{}: another program uses it ('fuser {}' tells which)\n", what, node.path);
     else
-      lines.usable += what + "\n";
+      lines.usable += fmt::format("{}\n", what);
   }
   for (const Error& fault : listing.faults) {
     served.hidden_node = fault.message;
@@ -98,10 +98,13 @@ int devices() {
   list_video(lines, served);
   list_usb(lines, on_bus, served);
   std::string text;
-  if (!lines.usable.empty()) text += "sources:\n" + lines.usable;
-  if (!lines.hindered.empty()) text += "cannot be used:\n" + lines.hindered;
+  const auto add = [&text](const char* heading, const std::string& under) {
+    if (!under.empty()) text.append(heading).append(under);
+  };
+  add("sources:\n", lines.usable);
+  add("cannot be used:\n", lines.hindered);
   if (text.empty()) text = kWhatToCheck;
-  if (!lines.notes.empty()) text += "notes:\n" + lines.notes;
+  add("notes:\n", lines.notes);
   return print(text) ? kExitDone : kExitFailed;
 }
 

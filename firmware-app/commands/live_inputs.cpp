@@ -76,6 +76,11 @@ Opened open_oni_file(const std::string& file, const SourceOptions& options) {
   return open_oni(std::move(*library), file, wish);
 }
 
+Opened open_lcm_log(const std::string& file, const SourceOptions& options) {
+  if (file.empty()) return Error{ErrorKind::bad_input, "lcmlog: names no file; write lcmlog:FILE"};
+  return open_depth_log(file, wish_of(options).sensor);
+}
+
 Opened open_v4l2_device(std::string_view text, const SourceOptions& options) {
   const Result<V4l2Address> address = parse_v4l2_address(text);
   if (!address) return address.error();
@@ -91,7 +96,7 @@ Opened open_live_input(const std::string& uri, const SourceOptions& options) {
   if (uri.starts_with(kOpenNi2)) return open_openni2_device(uri.substr(kOpenNi2.size()), options);
   if (uri.starts_with(kOni)) return open_oni_file(uri.substr(kOni.size()), options);
   if (uri.starts_with(kV4l2)) return open_v4l2_device(std::string_view(uri).substr(kV4l2.size()), options);
-  if (uri.starts_with(kLcmLog)) return open_depth_log(uri.substr(kLcmLog.size()), wish_of(options).sensor);
+  if (uri.starts_with(kLcmLog)) return open_lcm_log(uri.substr(kLcmLog.size()), options);
   return std::unique_ptr<DepthSource>();
 }
 

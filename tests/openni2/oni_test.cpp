@@ -1,5 +1,6 @@
 // .oni recordings, made by the library's recorder and played by its driver.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -71,6 +72,8 @@ TEST_F(Oni, WhatIsNoRecordingIsRefusedWithTheReason) {
   };
   EXPECT_NE(refusal(rig_.folder() / "none.oni").find("No such file"), std::string::npos);
   EXPECT_NE(refusal(rig_.folder()).find("folder"), std::string::npos);
+  ASSERT_EQ(mkfifo((rig_.folder() / "pipe.oni").c_str(), 0600), 0);
+  EXPECT_NE(refusal(rig_.folder() / "pipe.oni").find("a device or a pipe"), std::string::npos);
   std::ofstream(rig_.folder() / "text.oni") << "just a text that is long enough";
   EXPECT_NE(refusal(rig_.folder() / "text.oni").find("not an .oni recording"), std::string::npos);
 

@@ -56,18 +56,25 @@ TEST_F(Bus, ListsWhatIsPluggedIn) {
 TEST_F(Bus, KnowsThatAProgramHasADevice) {
   plug();
   GError* error = nullptr;
-  ASSERT_TRUE(umockdev_testbed_add_from_string(
-      testbed_,
-      "P: /devices/usb1/1-0:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\n"
-      "L: driver=../../../bus/usb/drivers/usbfs\n",
-      &error))
-      << error->message;
+  std::string camera = kSensor;  // another one, at port 2 of the first
+  for (const auto& [of_first, of_camera] : {std::pair{"/devices/usb1", "/devices/usb1/1-2"},
+                                            {"001/001", "001/002"},
+                                            {"001/001", "001/002"},
+                                            {"DEVNUM=001", "DEVNUM=002"},
+                                            {"devnum=1", "devnum=2"}})
+    camera.replace(camera.find(of_first), std::string(of_first).size(), of_camera);
+  camera +=
+      "P: /devices/usb1/1-2/1-2:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\n"
+      "L: driver=../../../../bus/usb/drivers/usbfs\n\n";
+  ASSERT_TRUE(umockdev_testbed_add_from_string(testbed_, camera.c_str(), &error)) << error->message;
   const auto bus = UsbBus::open();
   ASSERT_TRUE(bus);
   const auto devices = (*bus)->devices();
   ASSERT_TRUE(devices);
-  ASSERT_EQ(devices->size(), 1U);
-  EXPECT_TRUE(devices->front().in_use) << devices->front().port;
+  ASSERT_EQ(devices->size(), 2U);
+  EXPECT_FALSE(devices->front().in_use);
+  EXPECT_EQ(devices->back().port, "1-2");
+  EXPECT_TRUE(devices->back().in_use);
 }
 
 TEST_F(Bus, TellsAtOnceWhatComesAndGoes) {

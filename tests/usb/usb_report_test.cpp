@@ -31,6 +31,20 @@ UsbFinding judge(const UsbDevice& device, const UsbServed& served = {}) {
   return findings.empty() ? UsbFinding{} : findings.front();
 }
 
+/// With one of its lists set.
+template <typename List>
+UsbServed served(List UsbServed::*list, List value) {
+  UsbServed all;
+  all.*list = std::move(value);
+  return all;
+}
+UsbServed on_video(const char* bus) {
+  return served(&UsbServed::video_buses, {bus});
+}
+UsbServed by_openni2() {
+  return served(&UsbServed::by_openni2, {{0x1d27, 0x0600}});
+}
+
 TEST(UsbTable, HoldsEachDeviceOnceWithADescriptionThatExists) {
   std::set<std::pair<int, int>> seen;
   for (const UsbDeviceKind& kind : usb_device_kinds()) {
@@ -98,13 +112,12 @@ TEST(UsbReport, OtherDevicesAreNoConcernOfOurs) {
 }
 
 TEST(UsbReport, AUsableDeviceHasNoTrouble) {
-  EXPECT_EQ(judge(device(0x1d27, 0x0600, 480), {.by_openni2 = {{0x1d27, 0x0600}}}).trouble, UsbTrouble::none);
-  EXPECT_EQ(judge(device(0x8086, 0x0b07), {.video_buses = {"usb-0000:00:14.0-2"}}).trouble, UsbTrouble::none);
+  EXPECT_EQ(judge(device(0x1d27, 0x0600, 480), by_openni2()).trouble, UsbTrouble::none);
+  EXPECT_EQ(judge(device(0x8086, 0x0b07), on_video("usb-0000:00:14.0-2")).trouble, UsbTrouble::none);
   // Another program's use of the colour node is no hindrance; another camera's neither.
-  EXPECT_EQ(judge(device(0x8086, 0x0b07),
-                  {.video_buses = {"usb-0000:00:14.0-2"}, .busy_buses = {"usb-0000:00:14.0-3"}})
-                .trouble,
-            UsbTrouble::none);
+  UsbServed both = on_video("usb-0000:00:14.0-2");
+  both.busy_buses = {"usb-0000:00:14.0-3"};
+  EXPECT_EQ(judge(device(0x8086, 0x0b07), both).trouble, UsbTrouble::none);
 }
 
 TEST(UsbReport, EachTroubleIsToldWithItsMend) {
@@ -129,21 +142,22 @@ TEST(UsbReport, EachTroubleIsToldWithItsMend) {
   EXPECT_EQ(finding.trouble, UsbTrouble::wrong_mode);
   EXPECT_NE(finding.reason.find("USB 3"), std::string::npos);
 
-  finding = judge(device(0x8086, 0x0b07), {.video_buses = {"usb-0000:00:14.0-3"}});
+  finding = judge(device(0x8086, 0x0b07), on_video("usb-0000:00:14.0-3"));
   EXPECT_EQ(finding.trouble, UsbTrouble::no_driver);
   EXPECT_NE(finding.reason.find("uvcvideo"), std::string::npos);
 
-  finding = judge(device(0x8086, 0x0b07), {.busy_buses = {"usb-0000:00:14.0-2"}});
+  finding = judge(device(0x8086, 0x0b07), served(&UsbServed::busy_buses, {"usb-0000:00:14.0-2"}));
   EXPECT_EQ(finding.trouble, UsbTrouble::busy);
 
   // A node that this user may not open is no proof that there is none.
-  finding = judge(device(0x8086, 0x0b07), {.hidden_node = "/dev/video0: Permission denied"});
+  finding = judge(device(0x8086, 0x0b07),
+                  served(&UsbServed::hidden_node, std::string("/dev/video0: Permission denied")));
   EXPECT_EQ(finding.trouble, UsbTrouble::no_permission);
   EXPECT_NE(finding.reason.find("/dev/video0: Permission denied"), std::string::npos);
 
   sensor = device(0x1d27, 0x0600, 480);
   sensor.in_use = true;
-  finding = judge(sensor, {.by_openni2 = {{0x1d27, 0x0600}}});
+  finding = judge(sensor, by_openni2());
   EXPECT_EQ(finding.trouble, UsbTrouble::busy);
   EXPECT_NE(finding.reason.find("fuser /dev/bus/usb/001/005"), std::string::npos) << finding.reason;
 
