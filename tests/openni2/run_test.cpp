@@ -185,5 +185,9 @@ TEST_F(OpenNi2Run, ADeviceIsRecorded) {
   EXPECT_NE(read_file(at("r/camera.toml")).find("fx = 28"), std::string::npos);
 }
 
+TEST_F(OpenNi2Run, AFullDiskEndsARecordingOfADevice) {
+  record_until_the_disk_is_full("openni2:");
+}
+
 }  // namespace
 }  // namespace pliant::test

@@ -5,6 +5,7 @@
 #include <umockdev.h>
 
 #include <chrono>
+#include <filesystem>
 
 namespace pliant {
 namespace {
@@ -96,6 +97,25 @@ TEST_F(Bus, TellsAtOnceWhatComesAndGoes) {
   EXPECT_EQ((*bus)->left(), 1U);
   told_of([this] { umockdev_testbed_uevent(testbed_, "/sys/devices/usb1", "add"); });
   EXPECT_EQ((*bus)->arrived(), 2U);
+}
+
+TEST_F(Bus, OpenedAndClosedOftenKeepsNothing) {
+  plug();
+  const auto arrivals = std::make_shared<ArrivalSignal>();
+  const auto cycle = [&arrivals] {
+    const auto bus = UsbBus::open();
+    ASSERT_TRUE(bus) << bus.error().message;
+    ASSERT_TRUE((*bus)->watch(arrivals));
+    EXPECT_EQ((*bus)->devices()->size(), 1U);
+  };
+  const auto entries = [](const char* folder) {
+    return std::distance(std::filesystem::directory_iterator(folder), {});
+  };
+  for (int i = 0; i < 5; ++i) cycle();
+  const auto descriptors = entries("/proc/self/fd"), threads = entries("/proc/self/task");
+  for (int i = 0; i < 50; ++i) cycle();
+  EXPECT_EQ(entries("/proc/self/fd"), descriptors);
+  EXPECT_EQ(entries("/proc/self/task"), threads);
 }
 
 TEST_F(Bus, ResettingWhatIsNotThereIsAnError) {

@@ -1,5 +1,6 @@
 // The V4L2 driver on a kernel that the test plays.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <poll.h>
 
 #include <cerrno>
@@ -164,6 +165,27 @@ TEST(V4l2Source, SilenceIsATimeoutUnpluggingALossALieAnError) {
   rig.kernel.index_offset = 40;
   rig.next();
   EXPECT_EQ(rig.item.event, SourceEvent::lost);
+}
+
+TEST(V4l2Source, TwoHundredPullsLeakNothing) {
+  Rig rig;
+  const auto cycle = [&rig] {
+    rig.kernel.plugged = true;
+    rig.start();
+    rig.next();
+    ASSERT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
+    rig.kernel.plugged = false;
+    rig.next();
+    ASSERT_EQ(rig.item.event, SourceEvent::lost);
+    rig.source.reset();
+    rig.expect_refused(ErrorKind::absent, "no video device offers depth");
+    ASSERT_EQ(rig.kernel.open_files, 0);
+    ASSERT_EQ(rig.kernel.maps, 0);
+  };
+  for (int i = 0; i < 20; ++i) cycle();
+  const std::size_t heap = mallinfo2().uordblks;
+  for (int i = 0; i < 180 && !testing::Test::HasFatalFailure(); ++i) cycle();
+  EXPECT_EQ(mallinfo2().uordblks, heap);
 }
 
 TEST(V4l2Source, AnInputOutputErrorIsABadFrameManyAreALoss) {
