@@ -34,6 +34,11 @@ TEST_F(RecordCommand, AFolderThatHoldsARecordingIsRefused) {
   expect_refused(run_pliant({"record", "--source", "simulated:box", "-o", folder}), 2, {folder});
 }
 
+TEST_F(RecordCommand, AnEmptyPlaceIsNotTheCurrentOne) {
+  expect_refused(run_pliant({"record", "--source", "simulated:box", "--frames", "1", "-o", ""}), 2,
+                 {"names no folder"});
+}
+
 TEST_F(RecordCommand, AnUnwritablePlaceIsAWriteFailure) {
   write_file(at("file"), "x");
   expect_refused(run_pliant({"record", "--source", "simulated:box", "-o", at("file/r")}), 3, {"file/r"});
