@@ -43,6 +43,8 @@ int FakeKernel::open(const char* name) {
 
 int FakeKernel::close(int /*file*/) {
   --open_files;
+  streaming_ = false;
+  queue_.clear();
   return 0;
 }
 

@@ -172,6 +172,7 @@ TEST(V4l2Source, TwoHundredPullsLeakNothing) {
   const auto cycle = [&rig] {
     rig.kernel.plugged = true;
     rig.start();
+    ASSERT_NE(rig.source, nullptr);
     rig.next();
     ASSERT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
     rig.kernel.plugged = false;
