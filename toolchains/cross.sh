@@ -1,5 +1,5 @@
 #!/bin/bash
-# toolchains/cross.sh arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick|--count] [-- CTEST OPTION...]
+# toolchains/cross.sh arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick|--count|--guest] [-- CTEST OPTION...]
 #
 # Cross-compiles Pliant into build/PRESET (rpi-arm64, rpi-armhf, jetson), runs the tests of the core and of what
 # brings the outside in and out under qemu-user, and compares the results of whole runs, byte for byte, with those
@@ -8,6 +8,7 @@
 #                   build/sysroot/ARCH
 #   --build-only    no test
 #   --quick         only the core, its tests and the comparison: what continuous integration has time for
+#   --guest         only what runs in a virtual machine (tests/vm): built, not run
 #   --count         only the instructions of a frame (64 bit), against tests/cross/instruction_limits.txt
 # Needs the Debian packages g++-aarch64-linux-gnu or g++-arm-linux-gnueabihf, and qemu-user (./dev cross installs
 # them). Further CMake options go into CROSS_OPTIONS.
@@ -16,7 +17,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 say() { printf '\n== %s\n' "$*"; }
 die() { printf 'cross: %s\n' "$*" >&2; exit 2; }
-usage="usage: ./dev cross arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick|--count] [-- CTEST OPTION...]"
+usage="usage: ./dev cross arm64|armhf|jetson [--sysroot DIR] [--build-only|--quick|--count|--guest] [-- CTEST OPTION...]"
 [ $# -ge 1 ] || die "$usage"
 case $1 in
   arm64) arch=arm64 preset=rpi-arm64 ;;
@@ -39,6 +40,7 @@ while [ $# -gt 0 ]; do
       ;;
     --build-only) part=build ;;
     --quick) part=quick ;;
+    --guest) part=guest ;;
     --count)
       [ "$arch" = arm64 ] || die "instructions are counted on 64-bit ARM"
       part=count
@@ -61,6 +63,7 @@ targets=()
 case $part in
   quick) folders="core;cross" targets=(core_tests replay_frames) ;;
   count) folders="core;cross" targets=(replay_frames) ;;
+  guest) folders="commands;vm" targets=(pliant guest_tests) ;;
 esac
 read -r -a options <<<"${CROSS_OPTIONS:-}"
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
@@ -70,7 +73,7 @@ cmake --preset "$preset" "-DPLIANT_SYSROOT=$sysroot" "-DPLIANT_BUILD_TESTS=$([ $
   { cat "build/$preset.log" >&2; die "cmake --preset $preset failed"; }
 say "building $preset"
 cmake --build "$folder" -j "$(nproc)" ${targets[@]+--target "${targets[@]}"}
-[ $part != build ] || exit 0
+[ $part != build ] && [ $part != guest ] || exit 0
 if [ $part = count ]; then
   say "counting instructions, 30 frames"
   sources=(simulated:cushion simulated:figure simulated:box)

@@ -1,8 +1,7 @@
 #!/bin/bash
 # toolchains/make_sysroot.sh ARCH DIR [PACKAGE...]
 # Unpacks the Debian packages that Pliant is built against, for another architecture (arm64, armhf), into DIR.
-# The host needs no multiarch and no root; its own packages are not touched. Done again only when the list of
-# packages has changed.
+# Needs no root. Done again only when the list of packages has changed.
 set -euo pipefail
 export LC_ALL=C
 
@@ -18,28 +17,13 @@ packages=(libc6-dev libstdc++-12-dev libeigen3-dev libnanoflann-dev libfmt-dev l
 stamp=$dir/.packages
 [ -f "$stamp" ] && [ -d "$dir/.shlibs" ] && [ "$(cat "$stamp")" = "${packages[*]}" ] && exit 0
 
-command -v apt-get >/dev/null || die "needs apt-get, on Debian 12"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-mkdir -p "$scratch/lists/partial" "$scratch/cache/archives/partial"
-: >"$scratch/status"
-
-# The mirror that this machine uses already, of its own release.
-site=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -1)
-[ -n "$site" ] || die "apt knows no mirror; run apt-get update first"
-release=$(. /etc/os-release && echo "${VERSION_CODENAME:-bookworm}")
-keys=/usr/share/keyrings/debian-archive-keyring.gpg
-printf 'deb [arch=%s signed-by=%s] %s %s main\n' "$arch" "$keys" "$site" "$release" >"$scratch/sources.list"
-options=(-o "APT::Architecture=$arch" -o "APT::Architectures::=$arch" -o "Dir::State::lists=$scratch/lists"
-  -o "Dir::State::status=$scratch/status" -o "Dir::Etc::sourcelist=$scratch/sources.list"
-  -o Dir::Etc::sourceparts=/dev/null -o "Dir::Cache=$scratch/cache" -o Acquire::Languages=none
-  -o APT::Install-Recommends=false -o Debug::NoLocking=1 -o APT::Sandbox::User=root)
-apt-get "${options[@]}" -qq update || die "the mirror $site has no packages for $arch"
-apt-get "${options[@]}" -qq -y --download-only install "${packages[@]}" >"$scratch/log" 2>&1 ||
-  { tail -5 "$scratch/log" >&2; die "the packages could not be fetched"; }
+toolchains=$(dirname "${BASH_SOURCE[0]}")
+"$toolchains/foreign_apt.sh" "$arch" "$scratch" apt-get -qq -y --download-only install "${packages[@]}" \
+  >"$scratch/log" 2>&1 || { tail -5 "$scratch/log" >&2; die "the packages could not be fetched"; }
 
 rm -rf "$dir"
-mkdir -p "$dir"
 mkdir -p "$dir/.shlibs"
 for package in "$scratch"/cache/archives/*.deb; do
   dpkg -x "$package" "$dir"

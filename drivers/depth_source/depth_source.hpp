@@ -43,6 +43,9 @@ class DepthSource {
   [[nodiscard]] virtual std::int64_t frame_count() const { return -1; }
   /// Frames a second that the mode promises.
   [[nodiscard]] virtual double rate() const { return 30; }
+  /// Where the device is plugged in, as its driver names it: OpenNI2's URI ("1d27/0600@1/5"), V4L2's bus id
+  /// ("usb-0000:00:14.0-2"); empty for what is no device.
+  [[nodiscard]] virtual std::string place() const { return {}; }
   /// How the device fares, where the source watches it; else null.
   [[nodiscard]] virtual const DeviceMonitor* monitor() const { return nullptr; }
   /// The next frame, waiting at most `timeout_ms`. Reuses `item`'s storage; no heap call for a frame that is

@@ -80,9 +80,11 @@ bool encode_rows(Encoder& encoder, const Rows& rows) {
   png_set_IHDR(encoder.png, encoder.info, static_cast<png_uint_32>(rows.width),
                static_cast<png_uint_32>(rows.height), rows.bits, rows.colour_type, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  // A fixed filter and quick compression: a recording must keep the sensor's pace.
-  png_set_compression_level(encoder.png, 2);
-  png_set_filter(encoder.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  // A fixed filter and quick compression: a recording must keep the sensor's pace. Depth comes in steps that
+  // repeat along the row; left as it is it packs as well as by differences, in two thirds of the time.
+  const bool depth = rows.bits == 16;
+  png_set_compression_level(encoder.png, depth ? 1 : 2);
+  png_set_filter(encoder.png, PNG_FILTER_TYPE_BASE, depth ? PNG_FILTER_NONE : PNG_FILTER_SUB);
   png_write_info(encoder.png, encoder.info);
   if (rows.bits == 16 && std::endian::native == std::endian::little) png_set_swap(encoder.png);
   for (int v = 0; v < rows.height; ++v)

@@ -22,6 +22,8 @@ Result<LcmLog> LcmLog::open(const std::filesystem::path& path) {
   };
   std::error_code status;
   if (std::filesystem::is_directory(path, status)) return bad("is a folder");
+  // Of a pipe the first byte may never come.
+  if (std::filesystem::is_other(path, status)) return bad("is a device or a pipe; a log is a file");
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) return bad(std::strerror(errno));  // NOLINT(concurrency-mt-unsafe)
   LcmLog log(file);

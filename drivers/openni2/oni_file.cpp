@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -19,17 +20,26 @@ using Clock = std::chrono::steady_clock;
 /// time does not come.
 constexpr auto kLongestGap = std::chrono::seconds(3);
 
+/// The library's thread (PlayerDevice::MainLoop) looks through the list of streams without the lock under
+/// which one is taken out of it. It does so between two frames only, and, at the end of a file that is not
+/// repeated, without pause: then it reads memory that is free. So the file is repeated, which leaves the
+/// thread waiting to hand out the first frame again, and it is given this time to get there.
+constexpr auto kToRest = std::chrono::milliseconds(30);
+
 class OniFile final : public DepthSource {
  public:
   OniFile(std::shared_ptr<OpenNi2Library> library, const SensorDescription& sensor)
       : library_(std::move(library)), sensor_(sensor), stream_(library_) {}
+  OniFile(const OniFile&) = delete;
+  OniFile& operator=(const OniFile&) = delete;
+  ~OniFile() override { close(); }
 
   [[nodiscard]] Outcome open(const std::string& file, const SourceWish& wish) {
     if (Outcome done = stream_.open(file); !done) return done;
     const OpenNi2Api& api = library_->api();
     // By hand instead of by the clock: a frame is read when it is asked for, and none is left out.
     const float speed = -1;
-    const OniBool repeat = FALSE;
+    const OniBool repeat = TRUE;
     if (const OniStatus status =
             api.device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_SPEED, &speed, sizeof speed);
         status != ONI_STATUS_OK)
@@ -37,7 +47,7 @@ class OniFile final : public DepthSource {
     if (const OniStatus status = api.device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED,
                                                 &repeat, sizeof repeat);
         status != ONI_STATUS_OK)
-      return library_->fault("repeating cannot be switched off", status);
+      return library_->fault("repeating cannot be switched on", status);
     if (Outcome done = stream_.learn(wish); !done) return done;
     int count = 0;
     if (!stream_.get(ONI_STREAM_PROPERTY_NUMBER_OF_FRAMES, count) || count < 1)
@@ -46,7 +56,9 @@ class OniFile final : public DepthSource {
     if (stream_.mirrored())
       turned_.resize(static_cast<std::size_t>(stream_.camera().width) *
                      static_cast<std::size_t>(stream_.camera().height));
-    return stream_.start();
+    Outcome started = stream_.start();
+    started_ = static_cast<bool>(started);
+    return started;
   }
   [[nodiscard]] const Intrinsics& intrinsics() const override { return stream_.camera(); }
   [[nodiscard]] const SensorDescription& sensor() const override { return sensor_; }
@@ -54,6 +66,8 @@ class OniFile final : public DepthSource {
   [[nodiscard]] double rate() const override { return stream_.rate(); }
   [[nodiscard]] std::int64_t frame_count() const override { return count_; }
   void close() override {
+    if (started_) std::this_thread::sleep_for(kToRest);
+    started_ = false;
     stream_.close();
     closed_ = true;
   }
@@ -69,6 +83,13 @@ class OniFile final : public DepthSource {
     }
     switch (stream_.read(timeout_ms, item.frame, item.fault)) {
       case OpenNi2Stream::Got::frame:
+        if (item.frame.number <= index_ && item.frame.utime <= stamp_) {
+          closed_ = true;  // it begins anew: fewer frames than were announced
+          item.frame = {};
+          return;
+        }
+        index_ = item.frame.number;
+        stamp_ = item.frame.utime;
         item.event = SourceEvent::frame;
         if (stream_.mirrored()) turn(item.frame);
         break;
@@ -107,8 +128,9 @@ class OniFile final : public DepthSource {
   OpenNi2Stream stream_;
   std::vector<std::uint16_t> turned_;
   std::int64_t count_ = 0, number_ = 0;
+  std::int64_t index_ = -1, stamp_ = -1;  // the library's own, of the latest frame
   Clock::time_point last_;
-  bool waiting_ = false, closed_ = false;
+  bool started_ = false, waiting_ = false, closed_ = false;
 };
 
 }  // namespace

@@ -60,6 +60,8 @@ Outcome check_oni_layout(const std::filesystem::path& path) {
   };
   std::error_code status;
   if (std::filesystem::is_directory(path, status)) return bad("is a folder, not an .oni recording");
+  // Of a pipe the first byte may never come.
+  if (std::filesystem::is_other(path, status)) return bad("is a device or a pipe, not an .oni recording");
   const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
   if (!file) return bad(std::strerror(errno));  // NOLINT(concurrency-mt-unsafe)
   const std::uint64_t size = std::filesystem::file_size(path, status);

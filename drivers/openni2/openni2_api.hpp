@@ -18,6 +18,7 @@ struct OpenNi2Api {
   decltype(&oniDeviceClose) device_close = &oniDeviceClose;
   decltype(&oniDeviceGetSensorInfo) device_sensor_info = &oniDeviceGetSensorInfo;
   decltype(&oniDeviceSetProperty) device_set = &oniDeviceSetProperty;
+  decltype(&oniDeviceGetProperty) device_get = &oniDeviceGetProperty;
   decltype(&oniDeviceIsPropertySupported) device_has = &oniDeviceIsPropertySupported;
   decltype(&oniDeviceCreateStream) create_stream = &oniDeviceCreateStream;
   decltype(&oniStreamDestroy) stream_destroy = &oniStreamDestroy;

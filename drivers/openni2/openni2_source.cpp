@@ -18,6 +18,7 @@ class OpenNi2Source final : public DepthSource {
       : library_(std::move(library)), sensor_(sensor), stream_(library_) {}
 
   [[nodiscard]] Outcome open(const std::string& uri, const SourceWish& wish) {
+    place_ = uri;
     gone_ = library_->watch(uri);
     if (Outcome done = stream_.open(uri); !done) return done;
     if (Outcome done = stream_.set_up(wish); !done) return done;
@@ -27,6 +28,7 @@ class OpenNi2Source final : public DepthSource {
   [[nodiscard]] const SensorDescription& sensor() const override { return sensor_; }
   [[nodiscard]] bool live() const override { return true; }
   [[nodiscard]] double rate() const override { return stream_.rate(); }
+  [[nodiscard]] std::string place() const override { return place_; }
   void close() override {
     stream_.close();
     closed_ = true;
@@ -75,6 +77,7 @@ class OpenNi2Source final : public DepthSource {
  private:
   std::shared_ptr<OpenNi2Library> library_;
   SensorDescription sensor_;
+  std::string place_;
   std::shared_ptr<std::atomic<bool>> gone_;
   OpenNi2Stream stream_;
   DeviceClock clock_;

@@ -83,11 +83,16 @@ Outcome OpenNi2Stream::set_up(const SourceWish& wish) {
   const OpenNi2Api& api = library_->api();
   // Depth that is warped into the colour camera no longer fits its own camera.
   if (api.device_has(device_, ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) != 0) {
-    const OniImageRegistrationMode off = ONI_IMAGE_REGISTRATION_OFF;
+    OniImageRegistrationMode off = ONI_IMAGE_REGISTRATION_OFF;
+    int size = sizeof off;
     if (const OniStatus status =
             api.device_set(device_, ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION, &off, sizeof off);
         status != ONI_STATUS_OK)
       return library_->fault("registration to colour cannot be switched off", status);
+    // Not every driver that sets it can tell it.
+    if (api.device_get(device_, ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION, &off, &size) == ONI_STATUS_OK &&
+        off != ONI_IMAGE_REGISTRATION_OFF)
+      return Error{ErrorKind::device, "openni2: registration to colour stays on"};
   }
   OniVideoMode mode{};
   if (Outcome chosen = choose_mode(wish, mode); !chosen) return chosen;

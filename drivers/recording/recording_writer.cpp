@@ -27,6 +27,7 @@ std::string seconds(std::int64_t utime) {
 
 Result<std::unique_ptr<RecordingWriter>> RecordingWriter::create(const std::filesystem::path& folder,
                                                                  const CameraFile& camera) {
+  if (folder.empty()) return Error{ErrorKind::bad_input, "the recording to be written names no folder"};
   if (const char* fault = intrinsics_fault(camera.intrinsics))
     return Error{ErrorKind::bad_input, fmt::format("{}: cannot record: {}", folder.string(), fault)};
   std::error_code fault;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <filesystem>
 #include <system_error>
 
 namespace pliant {
@@ -34,6 +35,14 @@ int megabits_of(int speed) {
   }
 }
 
+/// The kernel names "usbfs" as the driver of an interface that a program has claimed.
+bool claimed_by_program(const std::string& port, int configuration, int interface) {
+  const std::string driver =
+      fmt::format("/sys/bus/usb/devices/{}:{}.{}/driver", port, configuration, interface);
+  std::error_code none;
+  return std::filesystem::read_symlink(driver, none).filename() == "usbfs";
+}
+
 UsbDevice describe(libusb_device* device, const libusb_device_descriptor& descriptor) {
   UsbDevice d;
   d.vendor = descriptor.idVendor;
@@ -48,9 +57,13 @@ UsbDevice describe(libusb_device* device, const libusb_device_descriptor& descri
   d.megabits = megabits_of(libusb_get_device_speed(device));
   libusb_config_descriptor* config = nullptr;
   if (libusb_get_active_config_descriptor(device, &config) == 0) {
-    for (int i = 0; i < config->bNumInterfaces; ++i)
-      if (config->interface[i].num_altsetting > 0)
-        d.classes.push_back(config->interface[i].altsetting[0].bInterfaceClass);
+    for (int i = 0; i < config->bNumInterfaces; ++i) {
+      if (config->interface[i].num_altsetting < 1) continue;
+      const libusb_interface_descriptor& interface = config->interface[i].altsetting[0];
+      d.classes.push_back(interface.bInterfaceClass);
+      d.in_use =
+          d.in_use || claimed_by_program(d.port, config->bConfigurationValue, interface.bInterfaceNumber);
+    }
     libusb_free_config_descriptor(config);
   }
   d.accessible = ::access(d.node().c_str(), R_OK | W_OK) == 0;
@@ -157,13 +170,11 @@ void UsbBus::stop_watching() {
   if (thread_.joinable()) thread_.join();
 }
 
-Outcome UsbBus::reset(std::uint16_t vendor, std::uint16_t product) const {
+Outcome UsbBus::reset(const UsbDevice& device) const {
   const DeviceList list(context_);
-  Outcome outcome = Error{ErrorKind::absent, fmt::format("usb: no device {:04x}:{:04x}", vendor, product)};
   for (ssize_t i = 0; i < list.count(); ++i) {
-    libusb_device_descriptor descriptor{};
-    if (libusb_get_device_descriptor(list.at(i), &descriptor) != 0 || descriptor.idVendor != vendor ||
-        descriptor.idProduct != product)
+    if (libusb_get_bus_number(list.at(i)) != device.bus ||
+        libusb_get_device_address(list.at(i)) != device.address)
       continue;
     libusb_device_handle* handle = nullptr;
     int code = libusb_open(list.at(i), &handle);
@@ -172,10 +183,10 @@ Outcome UsbBus::reset(std::uint16_t vendor, std::uint16_t product) const {
       libusb_close(handle);
     }
     // "Not found" means that the device came back as another one, which is what a reset is for.
-    outcome = code == 0 || code == LIBUSB_ERROR_NOT_FOUND ? success()
-                                                          : Outcome(fault("a port cannot be reset", code));
+    if (code == 0 || code == LIBUSB_ERROR_NOT_FOUND) return success();
+    return fault("a port cannot be reset", code);
   }
-  return outcome;
+  return Error{ErrorKind::absent, fmt::format("usb: no device at {}", device.node())};
 }
 
 }  // namespace pliant

@@ -23,6 +23,7 @@ struct UsbDevice {
   int megabits = 0;                        ///< of its connection, 0 where unknown
   std::vector<int> classes;                ///< of its interfaces
   bool accessible = false;                 ///< this user may open its node
+  bool in_use = false;                     ///< a program has one of its interfaces
   [[nodiscard]] std::string node() const;  ///< "/dev/bus/usb/001/005"
 };
 
@@ -38,9 +39,8 @@ class UsbBus {
   /// From now on `arrivals` is told whenever a device comes or goes, by a thread of its own. An error where
   /// the system gives no such word (then polling has to do).
   [[nodiscard]] Outcome watch(std::shared_ptr<ArrivalSignal> arrivals);
-  /// Resets the port of every device with these ids, as if it were plugged out and in. ErrorKind::absent
-  /// where there is none.
-  [[nodiscard]] Outcome reset(std::uint16_t vendor, std::uint16_t product) const;
+  /// Resets the device's port, as if it were plugged out and in. ErrorKind::absent where it is not there.
+  [[nodiscard]] Outcome reset(const UsbDevice& device) const;
   [[nodiscard]] std::uint64_t arrived() const noexcept { return arrived_.load(); }
   [[nodiscard]] std::uint64_t left() const noexcept { return left_.load(); }
 

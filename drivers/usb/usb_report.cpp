@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "drivers/usb/usb_place.hpp"
+
 namespace pliant {
 
 namespace {
@@ -36,19 +38,20 @@ void judge(UsbFinding& finding, const UsbServed& served) {
                  kind.remark.empty()
                      ? std::string("OpenNI2 does not list it; is the package libopenni2-0 whole?")
                      : std::string(kind.remark));
+    if (device.in_use)
+      set(UsbTrouble::busy, fmt::format("another program uses it ('fuser {}' tells which)", device.node()));
     return;
   }
-  const std::size_t dash = device.port.find('-');
-  const std::string port = dash == std::string::npos ? "" : device.port.substr(dash);
-  const bool has_node =
-      std::any_of(served.video_buses.begin(), served.video_buses.end(),
-                  [&](const std::string& bus) { return bus.starts_with("usb-") && bus.ends_with(port); });
-  if (has_node) return;
-  if (served.video_busy) return set(UsbTrouble::busy, "its video node is in use by another program");
+  const auto is_here = [&device](const std::string& bus) { return is_at_place(device, bus); };
+  if (std::any_of(served.busy_buses.begin(), served.busy_buses.end(), is_here))
+    return set(UsbTrouble::busy, "another program uses its depth node");
+  if (std::any_of(served.video_buses.begin(), served.video_buses.end(), is_here)) return;
+  if (!served.hidden_node.empty())
+    return set(UsbTrouble::no_permission,
+               "its video node may be one that cannot be asked: " + served.hidden_node);
   set(UsbTrouble::no_driver,
       "no video node serves it; is the module uvcvideo loaded ('modprobe uvcvideo'), and does its kernel "
-      "know this "
-      "model?");
+      "know this model?");
 }
 
 }  // namespace

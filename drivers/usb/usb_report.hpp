@@ -29,8 +29,9 @@ struct UsbFinding {
 /// What the other drivers see, so that a finding can say "no driver" and "busy".
 struct UsbServed {
   std::vector<std::pair<std::uint16_t, std::uint16_t>> by_openni2;  ///< vendor and product of what it lists
-  std::vector<std::string> video_buses;  ///< bus_info of video nodes: "usb-0000:00:14.0-2"
-  bool video_busy = false;               ///< a video node could not be opened: busy
+  std::vector<std::string> video_buses;  ///< bus ids of video nodes: "usb-0000:00:14.0-2"
+  std::vector<std::string> busy_buses;   ///< of depth nodes that another program streams from
+  std::string hidden_node;               ///< why a video node could not be asked; empty where all could
 };
 
 /// The depth cameras among `devices`, each with what is in its way.

@@ -66,15 +66,17 @@ Error v4l2_error(const std::string& path, std::string_view what, int error) {
 }
 
 Outcome open_v4l2_node(V4l2System& system, const std::string& path, V4l2File& file, V4l2Node& node) {
+  const auto no_video_device = [&path] {
+    return Error{ErrorKind::bad_input, fmt::format("v4l2: {} is no video device", path)};
+  };
   const int opened = system.open(path.c_str());
-  if (opened < 0) return v4l2_error(path, "cannot be opened", errno);
+  if (opened < 0) return errno == ENOTTY ? no_video_device() : v4l2_error(path, "cannot be opened", errno);
   file = V4l2File(system, opened);
   node = {};
   node.path = path;
   v4l2_capability capability{};
   if (const int error = file.call(VIDIOC_QUERYCAP, &capability); error != 0) {
-    if (error == ENOTTY || error == EINVAL)
-      return Error{ErrorKind::bad_input, fmt::format("v4l2: {} is no video device", path)};
+    if (error == ENOTTY || error == EINVAL) return no_video_device();
     return v4l2_error(path, "cannot be asked what it is", error);
   }
   node.card = text_of(capability.card);

@@ -33,6 +33,7 @@ struct V4l2Node {
   std::string path, card, bus;  ///< bus: "usb-0000:00:14.0-2", the same for the same plug
   bool capture = false;         ///< delivers pictures, by streaming
   bool multi_planar = false;
+  bool busy = false;                   ///< another program streams from it; list_v4l2() asks
   std::vector<std::uint32_t> formats;  ///< that it offers
   [[nodiscard]] bool offers_depth() const;
 };

@@ -41,6 +41,7 @@ class V4l2Source final : public DepthSource {
   [[nodiscard]] const SensorDescription& sensor() const override { return sensor_; }
   [[nodiscard]] bool live() const override { return true; }
   [[nodiscard]] double rate() const override { return rate_; }
+  [[nodiscard]] std::string place() const override { return node_.bus; }
   void close() override {
     buffers_.stop();
     file_.close();
@@ -267,10 +268,16 @@ V4l2Listing list_v4l2(V4l2System& system) {
   for (const std::string& path : system.nodes()) {
     V4l2File file;
     V4l2Node node;
-    if (const Outcome opened = open_v4l2_node(system, path, file, node); !opened)
+    if (const Outcome opened = open_v4l2_node(system, path, file, node); !opened) {
       listing.faults.push_back(opened.error());
-    else if (node.capture)
+    } else if (node.capture) {
+      // Asking for no buffers changes nothing, and is refused while another file has some.
+      v4l2_requestbuffers none{};
+      none.type = node.multi_planar ? V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE : V4L2_BUF_TYPE_VIDEO_CAPTURE;
+      none.memory = V4L2_MEMORY_MMAP;
+      node.busy = file.call(VIDIOC_REQBUFS, &none) == EBUSY;
       listing.nodes.push_back(std::move(node));
+    }
   }
   return listing;
 }

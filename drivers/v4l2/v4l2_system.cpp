@@ -4,9 +4,12 @@
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 
 #include "drivers/common/clock.hpp"
@@ -33,7 +36,17 @@ class Kernel final : public V4l2System {
     });
     return found;
   }
-  int open(const char* path) override { return ::open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC); }
+  int open(const char* path) override {
+    // Opening alone already does something with other files: a watchdog begins to count, a tape winds.
+    constexpr unsigned kVideoDevices = 81;  // linux/Documentation/admin-guide/devices.txt
+    struct stat about {};
+    if (::stat(path, &about) != 0) return -1;
+    if (!S_ISCHR(about.st_mode) || major(about.st_rdev) != kVideoDevices) {
+      errno = ENOTTY;
+      return -1;
+    }
+    return ::open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  }
   int close(int file) override { return ::close(file); }
   int ioctl(int file, unsigned long request, void* argument) override {
     return ::ioctl(file, request, argument);

@@ -18,7 +18,7 @@ class V4l2System {
   virtual ~V4l2System() = default;
   /// Video nodes, in the order of their numbers.
   [[nodiscard]] virtual std::vector<std::string> nodes() = 0;
-  /// For reading and writing, non-blocking.
+  /// For reading and writing, non-blocking; ENOTTY for what is no node of V4L2.
   [[nodiscard]] virtual int open(const char* path) = 0;
   virtual int close(int file) = 0;
   virtual int ioctl(int file, unsigned long request, void* argument) = 0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/openni2/openni2_library.hpp"
+#include "drivers/usb/usb_place.hpp"
 #include "drivers/usb/usb_report.hpp"
 #include "drivers/v4l2/v4l2.hpp"
 #include "drivers/v4l2/v4l2_format.hpp"
@@ -27,7 +28,7 @@ struct Lines {
   std::string usable, hindered, notes;
 };
 
-void list_openni2(Lines& lines, UsbServed& served) {
+void list_openni2(Lines& lines, const std::vector<UsbDevice>& on_bus, UsbServed& served) {
   const Result<std::shared_ptr<OpenNi2Library>> library = OpenNi2Library::start();
   if (!library) {
     lines.notes += library.error().message + "\n";
@@ -40,7 +41,9 @@ void list_openni2(Lines& lines, UsbServed& served) {
   }
   for (const OpenNi2Device& device : *devices) {
     served.by_openni2.emplace_back(device.vendor_id, device.product_id);
-    lines.usable += fmt::format("openni2:{}  {} {}\n", device.uri, device.vendor, device.name);
+    const UsbDevice* usb = find_at_place(on_bus, device.uri);
+    if (usb == nullptr || !usb->in_use)
+      lines.usable += fmt::format("openni2:{}  {} {}\n", device.uri, device.vendor, device.name);
   }
 }
 
@@ -49,26 +52,34 @@ void list_video(Lines& lines, UsbServed& served) {
   for (const V4l2Node& node : listing.nodes) {
     served.video_buses.push_back(node.bus);
     if (!node.offers_depth()) continue;
+    if (node.busy) served.busy_buses.push_back(node.bus);
     std::string formats;
     for (const std::uint32_t code : node.formats)
-      if (find_v4l2_format(code) != nullptr) formats += " " + fourcc_text(code);
-    lines.usable += fmt::format("v4l2:{}  {}, {},{}\n", node.path, node.card, node.bus, formats);
+      if (find_v4l2_format(code) != nullptr) formats.append(1, ' ').append(fourcc_text(code));
+    const std::string what = fmt::format("v4l2:{}  {}, {},{}", node.path, node.card, node.bus, formats);
+    if (node.busy)
+      lines.hindered +=
+          fmt::format("{}: another program uses it ('fuser {}' tells which)\n", what, node.path);
+    else
+      lines.usable += fmt::format("{}\n", what);
   }
   for (const Error& fault : listing.faults) {
-    served.video_busy = served.video_busy || fault.message.find("another program") != std::string::npos;
+    served.hidden_node = fault.message;
     lines.hindered += fault.message + "\n";
   }
 }
 
-void list_usb(Lines& lines, const UsbServed& served) {
+std::vector<UsbDevice> devices_on_bus(Lines& lines) {
   const Result<std::shared_ptr<UsbBus>> bus = UsbBus::open();
   const Result<std::vector<UsbDevice>> devices =
       bus ? (*bus)->devices() : Result<std::vector<UsbDevice>>(bus.error());
-  if (!devices) {
-    lines.notes += devices.error().message + "\n";
-    return;
-  }
-  for (const UsbFinding& finding : judge_usb_devices(*devices, served)) {
+  if (devices) return *devices;
+  lines.notes += devices.error().message + "\n";
+  return {};
+}
+
+void list_usb(Lines& lines, const std::vector<UsbDevice>& on_bus, const UsbServed& served) {
+  for (const UsbFinding& finding : judge_usb_devices(on_bus, served)) {
     const UsbDevice& device = finding.device;
     const std::string what = fmt::format("usb {} {:04x}:{:04x} {}", device.port, device.vendor,
                                          device.product, finding.kind->name);
@@ -82,14 +93,18 @@ void list_usb(Lines& lines, const UsbServed& served) {
 int devices() {
   Lines lines;
   UsbServed served;
-  list_openni2(lines, served);
+  const std::vector<UsbDevice> on_bus = devices_on_bus(lines);
+  list_openni2(lines, on_bus, served);
   list_video(lines, served);
-  list_usb(lines, served);
+  list_usb(lines, on_bus, served);
   std::string text;
-  if (!lines.usable.empty()) text += "sources:\n" + lines.usable;
-  if (!lines.hindered.empty()) text += "cannot be used:\n" + lines.hindered;
+  const auto add = [&text](const char* heading, const std::string& under) {
+    if (!under.empty()) text.append(heading).append(under);
+  };
+  add("sources:\n", lines.usable);
+  add("cannot be used:\n", lines.hindered);
   if (text.empty()) text = kWhatToCheck;
-  if (!lines.notes.empty()) text += "notes:\n" + lines.notes;
+  add("notes:\n", lines.notes);
   return print(text) ? kExitDone : kExitFailed;
 }
 

@@ -59,7 +59,8 @@ LiveSource::LiveSource(LiveSettings settings, std::unique_ptr<DepthSource> devic
       camera_(device_->intrinsics()),
       sensor_(device_->sensor()),
       rate_(device_->rate()),
-      judge_(camera_, sensor_, rate_) {
+      judge_(camera_, sensor_, rate_),
+      place_(device_->place()) {
   opened_ns_ = useful_ns_ = alive_ns_ = monotonic_ns();
   monitor_.set_state(DeviceState::opening);
 }
@@ -209,7 +210,7 @@ void LiveSource::try_to_open(std::int64_t until_ns, SourceItem& item) {
 void LiveSource::attempt(SourceItem& item) {
   if (monitor_.state() == DeviceState::lost) monitor_.set_state(DeviceState::reopening);
   // A device that stays away counts no attempts: there is nothing to reset.
-  if (attempts_ > 0 && attempts_ % kAttemptsBeforeReset == 0 && settings_.reset) settings_.reset();
+  if (attempts_ > 0 && attempts_ % kAttemptsBeforeReset == 0 && settings_.reset) settings_.reset(place_);
   Result<std::unique_ptr<DepthSource>> device = settings_.open();
   if (device && !same_mode((*device)->intrinsics(), camera_)) {
     const Intrinsics& other = (*device)->intrinsics();
@@ -221,6 +222,7 @@ void LiveSource::attempt(SourceItem& item) {
   if (device) {
     ++attempts_;
     device_ = std::move(*device);
+    place_ = device_->place();
     judge_.restart();
     opened_ns_ = useful_ns_ = monotonic_ns();
     last_frame_ns_ = 0;

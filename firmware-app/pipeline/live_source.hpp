@@ -15,8 +15,9 @@ namespace pliant {
 struct LiveSettings {
   /// Opens the device; ErrorKind::absent where it is not there, ErrorKind::device where it cannot be opened.
   std::function<Result<std::unique_ptr<DepthSource>>()> open;
-  /// Reset of the device's port, the last resort for one that is there and gives nothing; may be empty.
-  std::function<void()> reset;
+  /// Reset of the port at which the device was last (DepthSource::place()), the last resort for one that is
+  /// there and gives nothing; may be empty.
+  std::function<void(const std::string& place)> reset;
   /// Delayed frames are passed on, to who keeps frames instead of acting on them.
   bool late_is_welcome = false;
   std::shared_ptr<ArrivalSignal> arrivals;  ///< devices came or went; may be null
@@ -76,6 +77,7 @@ class LiveSource final : public DepthSource {
   std::int64_t next_try_ns_ = 0, pause_ns_ = kFirstPause;
   std::uint64_t arrivals_seen_ = 0;
   int attempts_ = 0;
+  std::string place_;   // of the device when it was open last
   std::string reason_;  // why the device is not open
   bool asked_ = false;  // for a frame
   bool closed_ = false;

@@ -1,6 +1,8 @@
 #include "tests/commands/program.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -98,6 +100,26 @@ std::string CommandTest::small_recording(int frames) const {
                   "-o", folder});
   EXPECT_EQ(ended.code, 0) << ended.err;
   return folder;
+}
+
+void CommandTest::record_until_the_disk_is_full(const std::string& source) const {
+  std::filesystem::create_directories(at("disk"));
+  if (unshare(CLONE_NEWNS) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+      mount("none", at("disk").c_str(), "tmpfs", 0, "size=2m") != 0)
+    GTEST_SKIP() << "no file system can be mounted here";
+  const Ended ended = run_pliant({"record", "--source", source, "-o", at("disk/r")});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("No space left on device"), std::string::npos) << ended.err;
+  ASSERT_NE(ended.out.find("recorded "), std::string::npos) << ended.out;
+  const std::size_t frames = std::stoul(ended.out.substr(ended.out.find("recorded ") + 9));
+  EXPECT_GE(frames, 3U);
+  // Every frame that is listed is there and whole, and none more.
+  EXPECT_EQ(count_files(at("disk/r/depth")), frames);
+  const Ended again = run_pliant({"record", "--source", "recording:" + at("disk/r"), "-o", at("copy")});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.out.find("bad"), std::string::npos) << again.out;
+  EXPECT_EQ(count_files(at("copy/depth")), frames);
+  umount(at("disk").c_str());
 }
 
 std::string CommandTest::box_model() const {

@@ -38,6 +38,9 @@ class CommandTest : public testing::Test {
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   /// A recording of `frames` frames of the simulated box, 160x120.
   [[nodiscard]] std::string small_recording(int frames = 4) const;
+  /// Records the endless or long `source` onto a disk of two megabytes: that ends with an error, and what was
+  /// written is a whole recording. Skips the test where nothing can be mounted.
+  void record_until_the_disk_is_full(const std::string& source) const;
   /// The model of the simulated box.
   [[nodiscard]] std::string box_model() const;
 

@@ -1,4 +1,6 @@
 // What pliant run refuses, and how it says so.
+#include <sys/stat.h>
+
 #include "drivers/images/png.hpp"
 #include "tests/commands/program.hpp"
 
@@ -23,6 +25,22 @@ TEST_F(RunRefusals, UnknownSourcesNameTheKnownOnes) {
   expect_refused(run_pliant({"run", "--source", folder_.string()}), 2, {"recording:" + folder_.string()});
   expect_refused(run_pliant({"run", "--source", "simulated:cushoin"}), 2, {"cushoin"});
   expect_refused(run_pliant({"run", "--source", "simulated:box?sed=2"}), 2, {"sed"});
+}
+
+TEST_F(RunRefusals, WhatIsNoFileIsNotWaitedFor) {
+  const std::string pipe = at("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string sensor = PLIANT_CONFIG_FOLDER "/sensors/realsense_d435.toml";
+  const auto refuses = [&sensor](const std::string& source, const std::vector<std::string>& parts) {
+    expect_refused(run_pliant({"run", "--source", source, "--sensor", sensor}), 2, parts);
+  };
+  for (const char* scheme : {"oni:", "lcmlog:"}) {
+    refuses(scheme + pipe, {pipe, "a device or a pipe"});
+    refuses(std::string(scheme) + "/dev/zero", {"/dev/zero", "a device or a pipe"});
+    refuses(scheme, {scheme, "names no file"});
+  }
+  for (const std::string& path : {pipe, std::string("/dev/null"), std::string("/dev/zero"), folder_.string()})
+    refuses("v4l2:" + path, {path, "is no video device"});
 }
 
 TEST_F(RunRefusals, MissingFilesAreNamed) {

@@ -38,6 +38,7 @@ class Device final : public DepthSource {
   [[nodiscard]] const SensorDescription& sensor() const override { return sensor_; }
   [[nodiscard]] bool live() const override { return true; }
   [[nodiscard]] double rate() const override { return 50; }
+  [[nodiscard]] std::string place() const override { return "the port of the tests"; }
   void close() override {}
   void next(int timeout_ms, SourceItem& item) override {
     using Stream = Script::Stream;
@@ -235,7 +236,10 @@ TEST(LiveSource, OpensAStalledDeviceAgainAndResetsItAsALastResort) {
   Rig rig;
   rig.settings.most_stall = 0.1;
   rig.settings.first_frame = 0.05;
-  rig.settings.reset = [&rig] { ++rig.script.resets; };
+  rig.settings.reset = [&rig](const std::string& place) {
+    EXPECT_EQ(place, "the port of the tests");
+    ++rig.script.resets;
+  };
   rig.start();
   rig.run(100);
   rig.script.stream = Script::Stream::silent;

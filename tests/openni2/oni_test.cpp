@@ -1,5 +1,6 @@
 // .oni recordings, made by the library's recorder and played by its driver.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -60,6 +61,26 @@ TEST_F(Oni, EveryFramePlaysBitForBitAndTheEndIsTold) {
   }
 }
 
+TEST_F(Oni, ClosingAtTheEndOrOnTheWayHarmsNothing) {
+  rig_.control().rate = 200;
+  const std::filesystem::path file = rig_.folder() / "short.oni";
+  rig_.record_oni(file, 4);
+  for (int round = 0; round < 40; ++round) {
+    auto source = open(file);
+    ASSERT_TRUE(source) << source.error().message;
+    const std::int64_t taken = round % 4 == 3 ? 2 : (*source)->frame_count();
+    SourceItem item;
+    for (std::int64_t i = 0; i < taken; ++i) {
+      (*source)->next(2000, item);
+      ASSERT_EQ(item.event, SourceEvent::frame) << "round " << round;
+    }
+    if (round % 2 == 0) {
+      (*source)->next(2000, item);
+      EXPECT_EQ(item.event, SourceEvent::end);
+    }
+  }
+}
+
 TEST_F(Oni, WhatIsNoRecordingIsRefusedWithTheReason) {
   const auto refusal = [this](const std::filesystem::path& file) {
     const auto source = open(file);
@@ -71,6 +92,8 @@ TEST_F(Oni, WhatIsNoRecordingIsRefusedWithTheReason) {
   };
   EXPECT_NE(refusal(rig_.folder() / "none.oni").find("No such file"), std::string::npos);
   EXPECT_NE(refusal(rig_.folder()).find("folder"), std::string::npos);
+  ASSERT_EQ(mkfifo((rig_.folder() / "pipe.oni").c_str(), 0600), 0);
+  EXPECT_NE(refusal(rig_.folder() / "pipe.oni").find("a device or a pipe"), std::string::npos);
   std::ofstream(rig_.folder() / "text.oni") << "just a text that is long enough";
   EXPECT_NE(refusal(rig_.folder() / "text.oni").find("not an .oni recording"), std::string::npos);
 

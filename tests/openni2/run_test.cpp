@@ -149,6 +149,7 @@ TEST_F(OpenNi2Run, GivesUpWhenTheDeviceStaysAway) {
   EXPECT_NE(ended.err.find("did not come back within 0.5 s"), std::string::npos) << ended.err;
   EXPECT_GE(stats()["tracked"].get<int>(), 1);
   EXPECT_EQ(stats()["heap_calls_after_start"], 0) << "even where the device goes";
+  EXPECT_EQ(stats()["page_faults_after_start"], 0);
 }
 
 TEST_F(OpenNi2Run, WithoutADeviceItSaysWhatToDo) {
@@ -182,6 +183,10 @@ TEST_F(OpenNi2Run, ADeviceIsRecorded) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(count_files(at("r/depth")), 12U);
   EXPECT_NE(read_file(at("r/camera.toml")).find("fx = 28"), std::string::npos);
+}
+
+TEST_F(OpenNi2Run, AFullDiskEndsARecordingOfADevice) {
+  record_until_the_disk_is_full("openni2:");
 }
 
 }  // namespace

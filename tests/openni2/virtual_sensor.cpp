@@ -226,6 +226,13 @@ class Device final : public oni::driver::DeviceBase {
   }
   void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
   OniBool isPropertySupported(int id) override { return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION; }
+  OniStatus getProperty(int id, void* out, int* size) override {
+    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return ONI_STATUS_NOT_IMPLEMENTED;
+    return give(out, size,
+                memory_.control()->fault == SensorFault::keeps_registration
+                    ? ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR
+                    : ONI_IMAGE_REGISTRATION_OFF);
+  }
   OniStatus setProperty(int id, const void* /*in*/, int /*size*/) override {
     return id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION ? ONI_STATUS_OK : ONI_STATUS_NOT_IMPLEMENTED;
   }

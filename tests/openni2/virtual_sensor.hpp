@@ -10,17 +10,18 @@ inline constexpr const char* kVirtualSensorVariable = "PLIANT_VIRTUAL_SENSOR";
 
 enum class SensorFault : std::int32_t {
   none,
-  silent,        ///< no frames
-  stuck,         ///< the same frame again and again
-  noise,         ///< random readings
-  zero,          ///< no reading at all
-  slow,          ///< a quarter of the promised rate
-  delayed,       ///< stamped half a second before they come
-  wrong_size,    ///< frames smaller than the mode
-  cut,           ///< frames with fewer bytes than their size needs
-  keeps_mirror,  ///< mirroring cannot be switched off
-  other_mode,    ///< takes a mode and sets another
-  no_start       ///< the stream does not start
+  silent,              ///< no frames
+  stuck,               ///< the same frame again and again
+  noise,               ///< random readings
+  zero,                ///< no reading at all
+  slow,                ///< a quarter of the promised rate
+  delayed,             ///< stamped half a second before they come
+  wrong_size,          ///< frames smaller than the mode
+  cut,                 ///< frames with fewer bytes than their size needs
+  keeps_mirror,        ///< mirroring cannot be switched off
+  keeps_registration,  ///< to colour, which it takes for switched off
+  other_mode,          ///< takes a mode and sets another
+  no_start             ///< the stream does not start
 };
 
 /// The frames to play follow behind it: `frames` pictures of width x height readings.

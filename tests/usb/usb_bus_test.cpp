@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <umockdev.h>
 
+#include <chrono>
+#include <filesystem>
+
 namespace pliant {
 namespace {
 
@@ -48,6 +51,31 @@ TEST_F(Bus, ListsWhatIsPluggedIn) {
   EXPECT_EQ(device.node(), "/dev/bus/usb/001/001");
   EXPECT_EQ(device.classes, std::vector<int>{255});
   EXPECT_TRUE(device.accessible);
+  EXPECT_FALSE(device.in_use);
+}
+
+TEST_F(Bus, KnowsThatAProgramHasADevice) {
+  plug();
+  GError* error = nullptr;
+  std::string camera = kSensor;  // another one, at port 2 of the first
+  for (const auto& [of_first, of_camera] : {std::pair{"/devices/usb1", "/devices/usb1/1-2"},
+                                            {"001/001", "001/002"},
+                                            {"001/001", "001/002"},
+                                            {"DEVNUM=001", "DEVNUM=002"},
+                                            {"devnum=1", "devnum=2"}})
+    camera.replace(camera.find(of_first), std::string(of_first).size(), of_camera);
+  camera +=
+      "P: /devices/usb1/1-2/1-2:1.0\nE: DEVTYPE=usb_interface\nE: SUBSYSTEM=usb\n"
+      "L: driver=../../../../bus/usb/drivers/usbfs\n\n";
+  ASSERT_TRUE(umockdev_testbed_add_from_string(testbed_, camera.c_str(), &error)) << error->message;
+  const auto bus = UsbBus::open();
+  ASSERT_TRUE(bus);
+  const auto devices = (*bus)->devices();
+  ASSERT_TRUE(devices);
+  ASSERT_EQ(devices->size(), 2U);
+  EXPECT_FALSE(devices->front().in_use);
+  EXPECT_EQ(devices->back().port, "1-2");
+  EXPECT_TRUE(devices->back().in_use);
 }
 
 TEST_F(Bus, TellsWhatComesAndGoes) {
@@ -69,10 +97,32 @@ TEST_F(Bus, TellsWhatComesAndGoes) {
   EXPECT_EQ((*bus)->arrived(), 2U);
 }
 
+TEST_F(Bus, OpenedAndClosedOftenKeepsNothing) {
+  plug();
+  const auto arrivals = std::make_shared<ArrivalSignal>();
+  const auto cycle = [&arrivals] {
+    const auto bus = UsbBus::open();
+    ASSERT_TRUE(bus) << bus.error().message;
+    ASSERT_TRUE((*bus)->watch(arrivals));
+    EXPECT_EQ((*bus)->devices()->size(), 1U);
+  };
+  const auto entries = [](const char* folder) {
+    return std::distance(std::filesystem::directory_iterator(folder), {});
+  };
+  for (int i = 0; i < 5; ++i) cycle();
+  const auto descriptors = entries("/proc/self/fd"), threads = entries("/proc/self/task");
+  for (int i = 0; i < 50; ++i) cycle();
+  EXPECT_EQ(entries("/proc/self/fd"), descriptors);
+  EXPECT_EQ(entries("/proc/self/task"), threads);
+}
+
 TEST_F(Bus, ResettingWhatIsNotThereIsAnError) {
   const auto bus = UsbBus::open();
   ASSERT_TRUE(bus);
-  const Outcome reset = (*bus)->reset(0x1d27, 0x0600);
+  UsbDevice gone;
+  gone.bus = 1;
+  gone.address = 9;
+  const Outcome reset = (*bus)->reset(gone);
   ASSERT_FALSE(reset);
   EXPECT_EQ(reset.error().kind, ErrorKind::absent);
 }

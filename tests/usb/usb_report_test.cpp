@@ -1,5 +1,6 @@
 // What is said of devices on the bus.
 #include "drivers/usb/usb_report.hpp"
+#include "drivers/usb/usb_place.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,20 @@ UsbFinding judge(const UsbDevice& device, const UsbServed& served = {}) {
   const auto findings = judge_usb_devices({&device, 1}, served);
   EXPECT_EQ(findings.size(), 1U);
   return findings.empty() ? UsbFinding{} : findings.front();
+}
+
+/// With one of its lists set.
+template <typename List>
+UsbServed served(List UsbServed::*list, List value) {
+  UsbServed all;
+  all.*list = std::move(value);
+  return all;
+}
+UsbServed on_video(const char* bus) {
+  return served(&UsbServed::video_buses, {bus});
+}
+UsbServed by_openni2() {
+  return served(&UsbServed::by_openni2, {{0x1d27, 0x0600}});
 }
 
 TEST(UsbTable, HoldsEachDeviceOnceWithADescriptionThatExists) {
@@ -64,14 +79,45 @@ TEST(UdevRules, GiveEveryUsableDeviceToWhoSitsThereAndNothingElse) {
   EXPECT_EQ(given, wanted);
 }
 
+TEST(UsbPlace, OfADeviceIsToldByBothDrivers) {
+  UsbDevice sensor = device(0x1d27, 0x0600);
+  EXPECT_TRUE(is_at_place(sensor, "1d27/0600@1/5"));
+  EXPECT_FALSE(is_at_place(sensor, "1d27/0600@1/55"));
+  EXPECT_FALSE(is_at_place(sensor, "1d27/0601@1/5"));
+  EXPECT_FALSE(is_at_place(sensor, ""));
+  UsbDevice camera = device(0x8086, 0x0b07);
+  EXPECT_TRUE(is_at_place(camera, "usb-0000:00:14.0-2"));
+  EXPECT_FALSE(is_at_place(camera, "usb-0000:00:14.0-1.2"));
+  camera.port = "3-1.2";
+  EXPECT_TRUE(is_at_place(camera, "usb-0000:00:14.0-1.2"));
+  EXPECT_FALSE(is_at_place(camera, "usb-0000:00:14.0-2"));
+  camera.classes = {3};  // a mouse
+  EXPECT_FALSE(is_at_place(camera, "usb-0000:00:14.0-1.2"));
+}
+
+TEST(UsbPlace, IsOneDeviceOrNone) {
+  std::vector<UsbDevice> devices(2, device(0x1d27, 0x0600));
+  devices[1].address = 9;
+  EXPECT_EQ(find_at_place(devices, "1d27/0600@1/9"), &devices[1]);
+  EXPECT_EQ(find_at_place(devices, "1d27/0600@1/7"), nullptr) << "either may be meant";
+  EXPECT_EQ(find_at_place(std::span(devices).first(1), "1d27/0600@1/7"), devices.data()) << "a new address";
+  EXPECT_EQ(find_at_place(devices, "usb-0000:00:14.0-2"), nullptr) << "at two controllers";
+  EXPECT_EQ(find_at_place(devices, ""), nullptr);
+  EXPECT_EQ(find_at_place({}, "1d27/0600@1/9"), nullptr);
+}
+
 TEST(UsbReport, OtherDevicesAreNoConcernOfOurs) {
   const std::vector<UsbDevice> devices = {device(0x1d6b, 2), device(0x046d, 0xc52b)};
   EXPECT_TRUE(judge_usb_devices(devices, {}).empty());
 }
 
 TEST(UsbReport, AUsableDeviceHasNoTrouble) {
-  EXPECT_EQ(judge(device(0x1d27, 0x0600, 480), {{{0x1d27, 0x0600}}, {}, false}).trouble, UsbTrouble::none);
-  EXPECT_EQ(judge(device(0x8086, 0x0b07), {{}, {"usb-0000:00:14.0-2"}, false}).trouble, UsbTrouble::none);
+  EXPECT_EQ(judge(device(0x1d27, 0x0600, 480), by_openni2()).trouble, UsbTrouble::none);
+  EXPECT_EQ(judge(device(0x8086, 0x0b07), on_video("usb-0000:00:14.0-2")).trouble, UsbTrouble::none);
+  // Another program's use of the colour node is no hindrance; another camera's neither.
+  UsbServed both = on_video("usb-0000:00:14.0-2");
+  both.busy_buses = {"usb-0000:00:14.0-3"};
+  EXPECT_EQ(judge(device(0x8086, 0x0b07), both).trouble, UsbTrouble::none);
 }
 
 TEST(UsbReport, EachTroubleIsToldWithItsMend) {
@@ -96,12 +142,24 @@ TEST(UsbReport, EachTroubleIsToldWithItsMend) {
   EXPECT_EQ(finding.trouble, UsbTrouble::wrong_mode);
   EXPECT_NE(finding.reason.find("USB 3"), std::string::npos);
 
-  finding = judge(device(0x8086, 0x0b07), {{}, {"usb-0000:00:14.0-3"}, false});
+  finding = judge(device(0x8086, 0x0b07), on_video("usb-0000:00:14.0-3"));
   EXPECT_EQ(finding.trouble, UsbTrouble::no_driver);
   EXPECT_NE(finding.reason.find("uvcvideo"), std::string::npos);
 
-  finding = judge(device(0x8086, 0x0b07), {{}, {}, true});
+  finding = judge(device(0x8086, 0x0b07), served(&UsbServed::busy_buses, {"usb-0000:00:14.0-2"}));
   EXPECT_EQ(finding.trouble, UsbTrouble::busy);
+
+  // A node that this user may not open is no proof that there is none.
+  finding = judge(device(0x8086, 0x0b07),
+                  served(&UsbServed::hidden_node, std::string("/dev/video0: Permission denied")));
+  EXPECT_EQ(finding.trouble, UsbTrouble::no_permission);
+  EXPECT_NE(finding.reason.find("/dev/video0: Permission denied"), std::string::npos);
+
+  sensor = device(0x1d27, 0x0600, 480);
+  sensor.in_use = true;
+  finding = judge(sensor, by_openni2());
+  EXPECT_EQ(finding.trouble, UsbTrouble::busy);
+  EXPECT_NE(finding.reason.find("fuser /dev/bus/usb/001/005"), std::string::npos) << finding.reason;
 
   finding = judge(device(0x2959, 0x1234));
   EXPECT_EQ(finding.trouble, UsbTrouble::unsupported);

@@ -43,6 +43,8 @@ int FakeKernel::open(const char* name) {
 
 int FakeKernel::close(int /*file*/) {
   --open_files;
+  streaming_ = false;
+  queue_.clear();
   return 0;
 }
 
@@ -79,6 +81,7 @@ int FakeKernel::answer(unsigned long request, void* argument) {
       return 0;
     case VIDIOC_REQBUFS: {
       auto& wanted = *static_cast<v4l2_requestbuffers*>(argument);
+      if (used_elsewhere) return error(EBUSY);
       if (wanted.count > 0 && streaming_) return error(EBUSY);
       if (maps > 0) return error(EBUSY);  // as old kernels: buffers that are mapped cannot be freed
       if (wanted.count > 0) wanted.count = buffers_given;

@@ -19,6 +19,7 @@ class FakeKernel final : public V4l2System {
   std::vector<std::uint32_t> formats = {V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_Z16};
   std::string bus = "usb-0000:00:14.0-2", path = "/dev/video2";
   bool multi_planar = false, plugged = true, is_capture = true;
+  bool used_elsewhere = false;            ///< another program streams from it
   std::uint32_t width = 64, height = 48;  ///< the only size that it has
   std::uint32_t padding = 0;              ///< bytes behind each row
   int open_error = 0;                     ///< of open()

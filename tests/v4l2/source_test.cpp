@@ -1,5 +1,6 @@
 // The V4L2 driver on a kernel that the test plays.
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <poll.h>
 
 #include <cerrno>
@@ -166,6 +167,28 @@ TEST(V4l2Source, SilenceIsATimeoutUnpluggingALossALieAnError) {
   EXPECT_EQ(rig.item.event, SourceEvent::lost);
 }
 
+TEST(V4l2Source, TwoHundredPullsLeakNothing) {
+  Rig rig;
+  const auto cycle = [&rig] {
+    rig.kernel.plugged = true;
+    rig.start();
+    ASSERT_NE(rig.source, nullptr);
+    rig.next();
+    ASSERT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
+    rig.kernel.plugged = false;
+    rig.next();
+    ASSERT_EQ(rig.item.event, SourceEvent::lost);
+    rig.source.reset();
+    rig.expect_refused(ErrorKind::absent, "no video device offers depth");
+    ASSERT_EQ(rig.kernel.open_files, 0);
+    ASSERT_EQ(rig.kernel.maps, 0);
+  };
+  for (int i = 0; i < 20; ++i) cycle();
+  const std::size_t heap = mallinfo2().uordblks;
+  for (int i = 0; i < 180 && !testing::Test::HasFatalFailure(); ++i) cycle();
+  EXPECT_EQ(mallinfo2().uordblks, heap);
+}
+
 TEST(V4l2Source, AnInputOutputErrorIsABadFrameManyAreALoss) {
   Rig rig;
   rig.start();
@@ -232,6 +255,36 @@ INSTANTIATE_TEST_SUITE_P(V4l2, FailureSweep,
                          testing::Combine(testing::Values(EIO, ENODEV, EAGAIN, EINVAL, EBUSY, EINTR, ENOMEM,
                                                           EACCES),
                                           testing::Bool(), testing::Bool()));
+
+TEST(V4l2Listing, TellsNodesFaultsAndWhoIsBusy) {
+  for (const bool multi_planar : {false, true}) {
+    FakeKernel kernel;
+    kernel.multi_planar = multi_planar;
+    V4l2Listing listing = list_v4l2(kernel);
+    ASSERT_EQ(listing.nodes.size(), 1U);
+    EXPECT_EQ(listing.nodes.front().path, "/dev/video2");
+    EXPECT_EQ(listing.nodes.front().formats, kernel.formats);
+    EXPECT_FALSE(listing.nodes.front().busy);
+    ASSERT_EQ(listing.faults.size(), 1U) << "/dev/video0 is not there any more";
+    kernel.used_elsewhere = true;
+    listing = list_v4l2(kernel);
+    ASSERT_EQ(listing.nodes.size(), 1U);
+    EXPECT_TRUE(listing.nodes.front().busy);
+    EXPECT_EQ(kernel.open_files, 0);
+    kernel.used_elsewhere = false;
+    kernel.is_capture = false;
+    EXPECT_TRUE(list_v4l2(kernel).nodes.empty());
+  }
+}
+
+TEST(V4l2Listing, OpensNothingThatIsNoVideoDevice) {
+  for (const char* path : {"/dev/null", "/dev/zero", "/dev/tty", "/", "/etc/passwd"}) {
+    const auto source = open_v4l2({path, ""}, wish());
+    ASSERT_FALSE(source) << path;
+    EXPECT_EQ(source.error().kind, ErrorKind::bad_input) << path;
+    EXPECT_NE(source.error().message.find("is no video device"), std::string::npos) << source.error().message;
+  }
+}
 
 TEST(V4l2Address, IsAPathABusOrNothingAndAFormat) {
   EXPECT_EQ(parse_v4l2_address("/dev/video0?format=Y16")->format, "Y16");

@@ -1,7 +1,7 @@
 // A camera whose firmware hangs comes back when its port is reset.
 #include <gtest/gtest.h>
 
-#include "drivers/usb/usb_bus.hpp"
+#include "drivers/usb/usb_place.hpp"
 #include "tests/vm/guest.hpp"
 #include "tests/vm/uvc_camera.hpp"
 
@@ -28,12 +28,19 @@ TEST_F(PortReset, TheKernelDoesIt) {
   camera_.hang();
   const int before = camera_.configurations();
   EXPECT_GE(before, 1);
-  const Outcome reset = (*bus)->reset(0x8086, 0x0b07);
+  const auto devices = (*bus)->devices();
+  ASSERT_TRUE(devices) << devices.error().message;
+  const UsbDevice* device = find_at_place(*devices, kBus);
+  ASSERT_NE(device, nullptr);
+  EXPECT_EQ(device->vendor, 0x8086);
+  const Outcome reset = (*bus)->reset(*device);
   EXPECT_TRUE(reset) << reset.error().message;
   EXPECT_EQ(camera_.configurations(), before + 1);
   EXPECT_FALSE(camera_.hung());
   // Only what was meant.
-  const Outcome other = (*bus)->reset(0x8086, 0x0ad3);
+  UsbDevice elsewhere = *device;
+  elsewhere.address += 50;
+  const Outcome other = (*bus)->reset(elsewhere);
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().kind, ErrorKind::absent);
 }

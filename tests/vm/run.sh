@@ -1,31 +1,40 @@
 #!/bin/bash
-# tests/vm/run.sh BUILD [FILTER]: what needs a kernel, in a virtual machine.
+# tests/vm/run.sh ARCH BUILD [FILTER]: what needs a kernel, in a virtual machine of the architecture ARCH (amd64, arm64).
 #
 # A guest with Debian's own kernel runs guest_tests of the build folder BUILD (all, or those that GoogleTest's FILTER
 # names): depth cameras made of software, plugged into the guest's kernel, through the real uvcvideo, v4l2loopback and
-# PS1080 drivers. Needs no hardware, no root and no KVM. Keeps the guest's console in build/vm/console.log.
+# PS1080 drivers. Needs no hardware, no root and no KVM. Keeps the guest's console in build/vm/ARCH/console.log.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 most_seconds=420
-build=$(cd "$1" && pwd) filter=${2:-'*'}
-folder=$PWD/build/vm
+arch=$1 build=$(cd "$2" && pwd) filter=${3:-'*'}
+folder=$PWD/build/vm/$arch
 console=$folder/console.log
 
 die() { printf 'vm: %s; the console is in %s\n' "$*" "${console#"$PWD"/}" >&2; exit 1; }
 
 mkdir -p "$folder"
 begin=$SECONDS
-version=$(tests/vm/kernel.sh "$folder/kernel")
-tests/vm/guest_root.sh "$folder/kernel" "$build" "$folder/root" "$folder/root.cpio"
+version=$(tests/vm/kernel.sh "$arch" "$folder/kernel")
+system=/
+if [ "$arch" != "$(dpkg --print-architecture)" ]; then
+  system=$folder/system
+  toolchains/make_sysroot.sh "$arch" "$system" busybox-static udev
+fi
+tests/vm/guest_root.sh "$arch" "$folder/kernel" "$build" "$system" "$folder/root" "$folder/root.cpio"
 printf 'Linux %s and a root of %d MB made in %d s; booting\n' "$version" \
   $(($(stat -c %s "$folder/root.cpio") / 1000000)) $((SECONDS - begin))
 
+case $arch in
+  # A processor without AVX: emulated, its wide instructions take longer than the narrow ones.
+  amd64) machine=(qemu-system-x86_64 -cpu Nehalem) line=ttyS0 ;;
+  arm64) machine=(qemu-system-aarch64 -machine virt -cpu cortex-a72) line=ttyAMA0 ;;
+esac
 rm -f "$console"
 status=0
-# A processor without AVX: emulated, its wide instructions take longer than the narrow ones.
-timeout --kill-after=5 "$most_seconds" qemu-system-x86_64 -accel tcg,thread=multi -cpu Nehalem -smp 2 -m 1024 \
+timeout --kill-after=5 "$most_seconds" "${machine[@]}" -accel tcg,thread=multi -smp 2 -m 1024 \
   -kernel "$folder/kernel/boot/vmlinuz-$version" -initrd "$folder/root.cpio" \
-  -append "console=ttyS0 quiet loglevel=0 panic=-1 mitigations=off tests=$filter" \
+  -append "console=$line quiet loglevel=0 panic=-1 mitigations=off tests=$filter" \
   -display none -monitor none -serial "file:$console" -no-reboot -nic none </dev/null 2>"$folder/qemu.log" || status=$?
 
 grep -aE '^(guest: |\[ +(OK|FAILED|SKIPPED|PASSED|  )* +\])' "$console" | tr -d '\r' || true

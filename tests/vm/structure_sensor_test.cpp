@@ -1,11 +1,15 @@
 // A Structure Sensor on the bus, as OpenNI2's own driver (PS1080) sees it.
 #include "tests/vm/structure_sensor.hpp"
 
+#include <fcntl.h>
 #include <grp.h>
 #include <gtest/gtest.h>
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <thread>
 
 #include "drivers/openni2/openni2_library.hpp"
@@ -15,6 +19,25 @@
 
 namespace pliant::test {
 namespace {
+
+/// Has the first interface of the device of this vendor, as programs that use libusb do.
+class AnotherProgram {
+ public:
+  explicit AnotherProgram(std::uint16_t vendor) {
+    const auto bus = UsbBus::open();
+    const auto devices = bus ? (*bus)->devices() : Result<std::vector<UsbDevice>>(bus.error());
+    for (const UsbDevice& device : devices ? *devices : std::vector<UsbDevice>())
+      if (device.vendor == vendor) file_ = open(device.node().c_str(), O_RDWR | O_CLOEXEC);
+    unsigned interface = 0;
+    EXPECT_EQ(ioctl(file_, USBDEVFS_CLAIMINTERFACE, &interface), 0) << errno;
+  }
+  ~AnotherProgram() { close(file_); }
+  AnotherProgram(const AnotherProgram&) = delete;
+  AnotherProgram& operator=(const AnotherProgram&) = delete;
+
+ private:
+  int file_ = -1;
+};
 
 class StructureSensorTest : public CommandTest {
  protected:
@@ -91,6 +114,12 @@ TEST_F(StructureSensorTest, DevicesNamesIt) {
     return told.find("sources:\nopenni2:1d27/0600@") != std::string::npos;
   })) << told;
   EXPECT_NE(told.find("its description is config/sensors/structure_sensor.toml"), std::string::npos) << told;
+  {
+    const AnotherProgram other(0x1d27);
+    const std::string busy = run_pliant({"devices"}).out;
+    EXPECT_NE(busy.find("another program uses it ('fuser /dev/bus/usb/"), std::string::npos) << busy;
+    EXPECT_EQ(busy.find("sources:"), std::string::npos) << busy;
+  }
   sensor_.unplug();
   EXPECT_TRUE(wait_until(20, [&told] {
     told = run_pliant({"devices"}).out;

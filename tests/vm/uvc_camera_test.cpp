@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <cstring>
 
 #include "drivers/usb/usb_bus.hpp"
@@ -16,7 +17,15 @@ namespace {
 constexpr std::uint16_t kVendor = 0x8086, kProduct = 0x0b07;  // a RealSense D435, which this driver serves
 constexpr int kRate = 10;                                     // frames a second
 constexpr double kMostError = 0.004;  // metres; a pixel of these pictures is 3 mm wide where the object is
+constexpr long kMovedPages = 10;      // the kernel moves a page now and then, which faults it once
 const std::string kSource = std::string("v4l2:") + kBus;
+
+/// Behind "key": in a file of --stats; -1 where there is none.
+long number_of(const std::string& stats, const std::string& key) {
+  const std::string before = '"' + key + "\": ";
+  const std::size_t at = stats.find(before);
+  return at == std::string::npos ? -1 : std::strtol(stats.c_str() + at + before.size(), nullptr, 10);
+}
 
 class UvcCameraTest : public CommandTest {
  protected:
@@ -105,6 +114,13 @@ TEST_F(UvcCameraTest, TheObjectIsFollowedAndFoundAgainAfterTheCableWasPulled) {
   printf("[          ] %.1f mm off its place in the median\n", 1000 * tracking.median_error());
   EXPECT_LT(tracking.median_error(), kMostError) << tracking.told();
 
+  // Who comes second is told so.
+  EXPECT_NE(run_pliant({"devices"}).out.find("another program uses it ('fuser /dev/video0' tells which)"),
+            std::string::npos);
+  expect_refused(
+      run_pliant({"record", "--source", kSource, "--sensor", at("sensor.toml"), "-o", at("second")}), 3,
+      {"/dev/video0", "another program uses it"});
+
   camera_.unplug();
   EXPECT_TRUE(tracking.until(5, [](const StatusMessage& status) {
     return status.device == DeviceState::absent;
@@ -125,6 +141,9 @@ TEST_F(UvcCameraTest, TheObjectIsFollowedAndFoundAgainAfterTheCableWasPulled) {
   EXPECT_TRUE(states.ends_with(" streaming")) << states;
   const Ended ended = tracking.stop();
   EXPECT_EQ(ended.code, 0) << ended.err;
+  const std::string stats = read_file(folder_ / "stats.json");
+  EXPECT_EQ(number_of(stats, "heap_calls_after_start"), 0) << stats;
+  EXPECT_LE(number_of(stats, "page_faults_after_start"), kMovedPages) << stats;
 }
 
 }  // namespace
