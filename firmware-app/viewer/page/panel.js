@@ -140,7 +140,9 @@ export class Panel {
       if (status.heap_calls + status.page_faults > 0)
         rows.push(row("heap calls / page faults", `${status.heap_calls} / ${status.page_faults}`));
       if (link?.incomplete) rows.push(row("incomplete on the way", String(link.incomplete)));
-      if (status.last_error) rows.push(row("last error", status.last_error, true));
+      // While a model is captured this is what the person who shows the object is told.
+      const capturing = status.source.startsWith("capture of ");
+      if (status.last_error) rows.push(row(capturing ? "capture" : "last error", status.last_error, true));
       byId("numbers").replaceChildren(...rows);
     }
     byId("advice").textContent = link?.advice ?? "";
