@@ -1,5 +1,6 @@
 #include "core/capture/first_view.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace pliant {

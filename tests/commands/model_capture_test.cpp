@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "drivers/geometry_files/geometry.hpp"
 #include "drivers/images/png.hpp"
@@ -148,9 +149,14 @@ class ViewsCommand : public CaptureCommand {
     command.insert(command.end(), {"-o", at("figure.model"), "--ply", at("figure.ply"), "--size", "0.45"});
     return command;
   }
-  [[nodiscard]] std::vector<std::string> all(std::string (ViewsCommand::*view)(int) const) const {
+  [[nodiscard]] std::vector<std::string> pictures() const {
     std::vector<std::string> views;
-    for (int i = 0; i < kViews; ++i) views.push_back((this->*view)(i));
+    for (int i = 0; i < kViews; ++i) views.push_back(picture(i));
+    return views;
+  }
+  [[nodiscard]] std::vector<std::string> clouds() const {
+    std::vector<std::string> views;
+    for (int i = 0; i < kViews; ++i) views.push_back(cloud(i));
     return views;
   }
   /// A view at a wrong place makes the figure thicker: its true size is known. Metres.
@@ -191,7 +197,7 @@ class ViewsCommand : public CaptureCommand {
 };
 
 TEST_F(ViewsCommand, DepthPicturesFindTheirPlaces) {
-  std::vector<std::string> command = capture_of(all(&ViewsCommand::picture));
+  std::vector<std::string> command = capture_of(pictures());
   command.insert(command.end(), {"--camera", camera()});
   const Ended captured = run_pliant(command);
   EXPECT_EQ(captured.code, 0) << captured.err;
@@ -202,7 +208,7 @@ TEST_F(ViewsCommand, DepthPicturesFindTheirPlaces) {
 }
 
 TEST_F(ViewsCommand, CloudsFindTheirPlaces) {
-  const Ended captured = run_pliant(capture_of(all(&ViewsCommand::cloud)));
+  const Ended captured = run_pliant(capture_of(clouds()));
   EXPECT_EQ(captured.code, 0) << captured.err;
   EXPECT_NE(captured.out.find("fused: 10 of 10 pictures"), std::string::npos) << captured.out << captured.err;
   expect_true_size();
@@ -215,7 +221,7 @@ TEST_F(ViewsCommand, KnownPosesArePutToThePositionsOfTheFiles) {
   for (int i = 0; std::getline(truth, line);)
     if (line[0] != '#') poses += std::to_string(i++) + line.substr(line.find(' ')) + "\n";
   write_file(at("poses.txt"), poses);
-  std::vector<std::string> command = capture_of(all(&ViewsCommand::cloud));
+  std::vector<std::string> command = capture_of(clouds());
   command.insert(command.end(), {"--poses", at("poses.txt")});
   const Ended captured = run_pliant(command);
   EXPECT_EQ(captured.code, 0) << captured.err;
