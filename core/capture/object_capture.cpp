@@ -144,7 +144,9 @@ bool ObjectCapture::follow(const GivenPose& given) noexcept {
   ViewAlignSettings align = align_settings();
   if (known) align.iterations = 0;
   ViewFit fit = align_to_volume(points, volume_, predicted, align, rows_);
-  if (tried && !surely_fits(fit)) return false;
+  if (tried &&
+      !(surely_fits(fit) && stands_before(keyframes_.all(), fit.pose, background_.planes(), align.noise)))
+    return false;
   if (!known && !tried && !fits(fit)) {
     status_.too_fast = !points.empty();
     const SearchTools tools{volume_, projector_, surface_, align, rows_};

@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "core/capture/background.hpp"
 #include "core/capture/keyframes.hpp"
 #include "core/capture/view_alignment.hpp"
 
@@ -14,6 +15,11 @@ namespace pliant {
 /// A view of which nothing was known beforehand: a thing looks like itself from other sides, too, so nearly
 /// all that can be judged must agree.
 [[nodiscard]] bool surely_fits(const ViewFit& fit) noexcept;
+
+/// Could the object stand so before the camera? Of the points of the kept views hardly any lie behind one of
+/// the planes that are seen: things do not reach through tables and walls. `pose`: camera <- model.
+[[nodiscard]] bool stands_before(std::span<const Keyframe> kept, const RigidTransform& pose,
+                                 std::span<const BackgroundPlane> planes, std::int32_t noise) noexcept;
 
 /// What the search looks with.
 struct SearchTools {

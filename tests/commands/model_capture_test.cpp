@@ -115,7 +115,7 @@ TEST_F(CaptureCommand, TakesKnownPoses) {
 /// Pictures of the figure from all round, far apart.
 class ViewsCommand : public CaptureCommand {
  protected:
-  static constexpr int kViews = 10;
+  static constexpr int kViews = 14;
   ViewsCommand() {
     const Ended recorded =
         run_pliant({"record", "--source",
@@ -124,7 +124,7 @@ class ViewsCommand : public CaptureCommand {
     EXPECT_EQ(recorded.code, 0) << recorded.err;
   }
   [[nodiscard]] std::string picture(int i) const {
-    return at("views/depth/00000" + std::to_string(i) + ".png");
+    return at((i < 10 ? "views/depth/00000" : "views/depth/0000") + std::to_string(i) + ".png");
   }
   [[nodiscard]] std::string camera() const { return at("views/camera.toml"); }
   /// The readings of picture i as a cloud in the camera's frame.
@@ -202,7 +202,7 @@ TEST_F(ViewsCommand, DepthPicturesFindTheirPlaces) {
   const Ended captured = run_pliant(command);
   EXPECT_EQ(captured.code, 0) << captured.err;
   EXPECT_EQ(captured.err.find("left out"), std::string::npos) << captured.err;
-  EXPECT_NE(captured.out.find("fused: 10 of 10 pictures"), std::string::npos) << captured.out;
+  EXPECT_NE(captured.out.find("fused: 14 of 14 pictures"), std::string::npos) << captured.out;
   EXPECT_NE(captured.out.find("seen: 8 of 8 sides\n"), std::string::npos) << captured.out;
   expect_true_size();
 }
@@ -210,7 +210,7 @@ TEST_F(ViewsCommand, DepthPicturesFindTheirPlaces) {
 TEST_F(ViewsCommand, CloudsFindTheirPlaces) {
   const Ended captured = run_pliant(capture_of(clouds()));
   EXPECT_EQ(captured.code, 0) << captured.err;
-  EXPECT_NE(captured.out.find("fused: 10 of 10 pictures"), std::string::npos) << captured.out << captured.err;
+  EXPECT_NE(captured.out.find("fused: 14 of 14 pictures"), std::string::npos) << captured.out << captured.err;
   expect_true_size();
 }
 
@@ -225,7 +225,7 @@ TEST_F(ViewsCommand, KnownPosesArePutToThePositionsOfTheFiles) {
   command.insert(command.end(), {"--poses", at("poses.txt")});
   const Ended captured = run_pliant(command);
   EXPECT_EQ(captured.code, 0) << captured.err;
-  EXPECT_NE(captured.out.find("fused: 10 of 10 pictures"), std::string::npos) << captured.out;
+  EXPECT_NE(captured.out.find("fused: 14 of 14 pictures"), std::string::npos) << captured.out;
   expect_true_size();
 }
 
