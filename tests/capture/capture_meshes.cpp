@@ -15,7 +15,7 @@ namespace {
 
 /// The file's mesh, scaled, one of its axes upwards.
 Result<Geometry> standing_mesh(const std::string& path, double diagonal, int up) {
-  if (path == "bottle") return bottle_with_lug();
+  if (path == "bottle") return bottle_with_lugs();
   const Result<Geometry> file = read_geometry(path);
   if (!file) return file.error();
   std::vector<std::string> warnings;
@@ -47,10 +47,12 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
   run.compare();
   const CaptureScore& s = run.score;
   std::printf(
-      "| %s | %s | %lld of %lld | %.2f mm | %.2f mm | %.1f %% | %.2f mm | %.2f mm | %.2f to %.2f mm |\n",
+      "| %s | %s | %lld of %lld | %.2f mm | %.2f mm | %.1f %% | %.2f mm | %.2f mm | %.2f to %.2f mm | %d of "
+      "8 sides, %lld featureless |\n",
       std::filesystem::path(path).stem().c_str(), options.c_str(), static_cast<long long>(s.fused),
       static_cast<long long>(s.frames), 1e3 * s.median, 1e3 * s.p95, 100 * s.coverage, 1e3 * s.seam,
-      1e3 * s.drift, 1e3 * s.joint.before, 1e3 * s.joint.after);
+      1e3 * s.drift, 1e3 * s.joint.before, 1e3 * s.joint.after, run.capture.coverage().sectors_seen(),
+      static_cast<long long>(run.capture.figures().featureless));
   if (const char* const ply = std::getenv("CAPTURE_PLY")) static_cast<void>(write_ply(ply, run.captured));
   return 0;
 }

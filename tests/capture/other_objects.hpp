@@ -1,6 +1,8 @@
 // Objects that the simulated sensor does not bring itself.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "drivers/geometry_files/geometry.hpp"
@@ -20,9 +22,12 @@ inline Geometry with_normals(const Mesh& mesh) {
   return geometry;
 }
 
-/// A bottle 26 cm tall, of which all but a lug on one side is a surface of revolution.
-inline Geometry bottle_with_lug() {
+/// A bottle 26 cm tall, of which all but three lugs is a surface of revolution.
+inline Geometry bottle_with_lugs() {
   constexpr int kRings = 120, kSides = 180;
+  // Angle, height above the ground and height of each lug: of any side at least one is seen.
+  constexpr std::array<std::array<double, 3>, 3> kLugs = {
+      {{-1.4, 0.09, 0.012}, {0.5, 0.11, 0.010}, {2.8, 0.07, 0.012}}};
   Mesh mesh;
   for (int i = 0; i <= kRings; ++i) {
     const double t = static_cast<double>(i) / kRings, z = 0.26 * t;
@@ -33,8 +38,11 @@ inline Geometry bottle_with_lug() {
     radius *= std::sqrt(std::min({1.0, t / 0.02, (1 - t) / 0.02}));
     for (int j = 0; j < kSides; ++j) {
       const double angle = 2 * M_PI * j / kSides;
-      const double aside = std::remainder(angle - 1, 2 * M_PI) * 0.045, above = z - 0.09;
-      const double lug = 0.018 * std::exp(-(aside * aside + above * above) / (2 * 0.009 * 0.009));
+      double lug = 0;
+      for (const auto& [at, above, height] : kLugs) {
+        const double aside = std::remainder(angle - at, 2 * M_PI) * 0.045, up = z - above;
+        lug += height * std::exp(-(aside * aside + up * up) / (2 * 0.009 * 0.009));
+      }
       mesh.vertices.emplace_back((radius + lug) * std::cos(angle), (radius + lug) * std::sin(angle), z);
     }
   }
