@@ -43,7 +43,10 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
   }
   CaptureRun run;
   run.run(**source);
-  run.finish();
+  CapturedMeshSettings cleaning;
+  if (const char* const smoothing = std::getenv("CAPTURE_SMOOTHING"))
+    cleaning.smoothing = std::atoi(smoothing);
+  run.finish(cleaning);
   run.compare();
   const CaptureScore& s = run.score;
   std::printf(
@@ -51,8 +54,8 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
       "8 sides, %lld featureless |\n",
       std::filesystem::path(path).stem().c_str(), options.c_str(), static_cast<long long>(s.fused),
       static_cast<long long>(s.frames), 1e3 * s.median, 1e3 * s.p95, 100 * s.coverage, 1e3 * s.seam,
-      1e3 * s.drift, 1e3 * s.joint.before, 1e3 * s.joint.after, run.capture.coverage().sectors_seen(),
-      static_cast<long long>(run.capture.figures().featureless));
+      1e3 * s.drift, 1e3 * s.joint.before, 1e3 * s.joint.after, s.normals,
+      run.capture.coverage().sectors_seen(), static_cast<long long>(run.capture.figures().featureless));
   if (const char* const ply = std::getenv("CAPTURE_PLY")) static_cast<void>(write_ply(ply, run.captured));
   return 0;
 }
