@@ -15,7 +15,7 @@ struct CapturedMeshSettings {
   double table_height = -1e3;
   /// Rounds of smooth_grain() [0, 100]: a voxel's edge is about what the sensor's noise leaves uncertain, so
   /// what is as short as some voxels is grain, and would turn the normals.
-  int smoothing = 4;
+  int smoothing = 10;
 };
 
 /// Triangles wound outward and unit normals, model frame, metres; with a border where nothing was seen. Empty

@@ -50,8 +50,9 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
   run.compare();
   const CaptureScore& s = run.score;
   std::printf(
-      "| %s | %s | %lld of %lld | %.2f mm | %.2f mm | %.1f %% | %.2f mm | %.2f mm | %.2f to %.2f mm | %d of "
-      "8 sides, %lld featureless |\n",
+      "| %s | %s | %lld of %lld | %.2f mm | %.2f mm | %.1f %% | %.2f mm | %.2f mm | %.2f to %.2f mm | %.1f° "
+      "| "
+      "%d of 8 sides, %lld featureless |\n",
       std::filesystem::path(path).stem().c_str(), options.c_str(), static_cast<long long>(s.fused),
       static_cast<long long>(s.frames), 1e3 * s.median, 1e3 * s.p95, 100 * s.coverage, 1e3 * s.seam,
       1e3 * s.drift, 1e3 * s.joint.before, 1e3 * s.joint.after, s.normals,
