@@ -96,5 +96,5 @@ host=(pliant replay_frames capture_frames)
   { cat build/release.log >&2; die "cmake --preset release failed"; }
 cmake --build build/release -j "$(nproc)" --target "${host[@]}" >/dev/null
 tests/cross/compare_digests.sh 12 build/release "$folder" -- simulated:cushion \
-  "capture:simulated:figure?motion=turned&frames=12&width=320&height=240"
+  "capture:simulated:figure?motion=turned&frames=60&width=320&height=240"
 [ $part = quick ] || tests/cross/compare_runs.sh 60 build/release "$folder"

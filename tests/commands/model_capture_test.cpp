@@ -7,6 +7,8 @@
 
 #include "drivers/geometry_files/geometry.hpp"
 #include "drivers/images/png.hpp"
+#include "drivers/lcm/frame_assembler.hpp"
+#include "drivers/lcm/subscriber.hpp"
 #include "tests/commands/program.hpp"
 
 namespace pliant::test {
@@ -71,6 +73,40 @@ TEST_F(CaptureCommand, SaysWhenNothingStandsThere) {
   EXPECT_EQ(ended.code, 1) << ended.out;
   EXPECT_NE(ended.err.find("nothing was captured"), std::string::npos) << ended.err;
   EXPECT_FALSE(std::filesystem::exists(at("m")));
+}
+
+TEST_F(CaptureCommand, PublishesTheModelAsItGrows) {
+  std::vector<std::string> command = words(kTurned, at("box.model"));
+  command.back() = "file://" + at("run.log") + "?mode=w";
+  ASSERT_EQ(run_pliant(command).code, 0);
+  std::vector<std::size_t> sizes;
+  std::int64_t tracking = 0, pictures = 0;
+  std::string told;
+  ModelAssembler models;
+  LcmSubscriber::Handlers handlers;
+  handlers.model = [&](const ModelMessage& message) {
+    if (models.take(message)) sizes.push_back(models.model().points.size());
+  };
+  handlers.regions = [&](const RegionsMessage& message) {
+    tracking += message.state == TrackState::tracking ? 1 : 0;
+  };
+  handlers.depth = [&](const DepthMessage& message) { pictures += message.part == 0 ? 1 : 0; };
+  handlers.status = [&](const StatusMessage& message) { told = message.last_error; };
+  const auto log = LcmSubscriber::create("file://" + at("run.log") + "?speed=0", "PLIANT_CAPTURE", handlers);
+  ASSERT_TRUE(log);
+  while ((*log)->handle(100) > 0) {
+  }
+  ASSERT_GE(sizes.size(), 2U);
+  EXPECT_GT(sizes.back(), 2 * sizes.front());
+  EXPECT_GT(tracking, 30);
+  EXPECT_GT(pictures, 2);
+  EXPECT_NE(told.find("of 8 sides"), std::string::npos) << told;
+  // On the tracker's own channels nobody hears of it.
+  const auto tracker = LcmSubscriber::create("file://" + at("run.log") + "?speed=0", "PLIANT", {});
+  ASSERT_TRUE(tracker);
+  while ((*tracker)->handle(100) > 0) {
+  }
+  EXPECT_EQ((*tracker)->counters().total(), 0);
 }
 
 TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
