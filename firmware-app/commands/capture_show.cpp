@@ -54,7 +54,8 @@ void CaptureShow::show(const DepthFrame& frame, const ObjectCapture& capture, co
   if (pictures_ % every_ == 0) renew_model(capture);
   publish_pose(frame, status);
   if (pictures_ % std::max<std::int64_t>(1, every_ / 5) == 0) publisher_->publish_depth(frame, camera_);
-  if (pictures_ % std::max<std::int64_t>(1, every_ / 2) == 0) publish_status(frame, status, words);
+  if (pictures_ % std::max<std::int64_t>(1, every_ / 2) == 0)
+    publish_status(frame, capture.figures(), status, words);
   ++pictures_;
 }
 
@@ -100,8 +101,8 @@ void CaptureShow::publish_pose(const DepthFrame& frame, const CaptureStatus& sta
   publisher_->publish(bodies, frame.utime);
 }
 
-void CaptureShow::publish_status(const DepthFrame& frame, const CaptureStatus& status,
-                                 const std::string& words) {
+void CaptureShow::publish_status(const DepthFrame& frame, const CaptureFigures& figures,
+                                 const CaptureStatus& status, const std::string& words) {
   StatusContent content;
   content.utime = frame.utime;
   content.version = PLIANT_VERSION;
@@ -111,6 +112,9 @@ void CaptureShow::publish_status(const DepthFrame& frame, const CaptureStatus& s
   content.state = state_of(status.state);
   content.device = DeviceState::streaming;
   content.rate = static_cast<float>(every_);
+  content.tracked = figures.fused;
+  content.lost = figures.lost;
+  content.searching = figures.frames - figures.fused - figures.lost;
   content.last_error = words;
   publisher_->publish_status(content);
 }

@@ -30,7 +30,8 @@ class CaptureShow {
               double rate);
   void renew_model(const ObjectCapture& capture);
   void publish_pose(const DepthFrame& frame, const CaptureStatus& status);
-  void publish_status(const DepthFrame& frame, const CaptureStatus& status, const std::string& words);
+  void publish_status(const DepthFrame& frame, const CaptureFigures& figures, const CaptureStatus& status,
+                      const std::string& words);
 
   std::unique_ptr<LcmPublisher> publisher_;
   std::string source_;
