@@ -13,8 +13,9 @@ namespace pliant {
 ///
 /// A bottle that is turned moves only its lugs. The rest, seen in the same pixels as before, has the same
 /// errors of the sensor as before, and these hold it where it was, with a hundred times as many rows. They
-/// lean against the motion by some degrees only; so rows weigh by the fourth power of how much they lean, up to 25°
-/// (geometric stability: Gelfand et al.: Geometrically stable sampling for the ICP algorithm, 3DIM 2003).
+/// lean against the motion by some degrees only; so rows weigh by the fourth power of how much they lean, up
+/// to 25° (geometric stability: Gelfand et al.: Geometrically stable sampling for the ICP algorithm, 3DIM
+/// 2003).
 struct WeakMotions {
   PlaneEquations equations;
   /// Of all small motions, the least share of a motion that telling rows see along their normals; the motion
