@@ -61,8 +61,8 @@ folder=build/$preset
 folders="core;cross;geometry_files;images;lcm;model_files;recording;simulated"
 targets=()
 case $part in
-  quick) folders="core;cross" targets=(core_tests replay_frames) ;;
-  count) folders="core;cross" targets=(replay_frames) ;;
+  quick) folders="core;cross" targets=(core_tests replay_frames capture_frames) ;;
+  count) folders="core;cross" targets=(replay_frames capture_frames) ;;
   guest) folders="commands;vm" targets=(pliant guest_tests) ;;
 esac
 read -r -a options <<<"${CROSS_OPTIONS:-}"
@@ -76,7 +76,7 @@ cmake --build "$folder" -j "$(nproc)" ${targets[@]+--target "${targets[@]}"}
 [ $part != build ] && [ $part != guest ] || exit 0
 if [ $part = count ]; then
   say "counting instructions, 30 frames"
-  sources=(simulated:cushion simulated:figure simulated:box)
+  sources=(simulated:cushion simulated:figure simulated:box "capture:simulated:figure?motion=turned")
   toy=${PLIANT_SHARED_DATA:-../shared/data}/real_plush_squirrel
   if [ -d "$toy" ]; then
     mkdir -p build/bench
@@ -92,11 +92,12 @@ say "testing under $emulator"
 ctest --test-dir "$folder" -j "$(nproc)" --output-on-failure "$@"
 
 say "comparing with this machine's build"
-host=(pliant replay_frames)
-[ $part = quick ] && host=(replay_frames)
+host=(pliant replay_frames capture_frames)
+[ $part = quick ] && host=(replay_frames capture_frames)
 [ -f build/release/CMakeCache.txt ] && grep -q '^PLIANT_BUILD_TESTS:BOOL=ON' build/release/CMakeCache.txt ||
   cmake --preset release -DPLIANT_BUILD_TESTS=ON "${options[@]}" >build/release.log 2>&1 ||
   { cat build/release.log >&2; die "cmake --preset release failed"; }
 cmake --build build/release -j "$(nproc)" --target "${host[@]}" >/dev/null
-tests/cross/compare_digests.sh 12 build/release "$folder" -- simulated:cushion
+tests/cross/compare_digests.sh 12 build/release "$folder" -- simulated:cushion \
+  "capture:simulated:figure?motion=turned&frames=60&width=320&height=240"
 [ $part = quick ] || tests/cross/compare_runs.sh 60 build/release "$folder"

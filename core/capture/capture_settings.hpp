@@ -14,7 +14,8 @@ struct CaptureSettings {
   double size = 0.50;  ///< edge of the cube that holds the object, metres [0.05, 1.0]
   double voxel = 0;  ///< metres; 0: follows the sensor's noise and `size` (see volume_plan()) [0.0005, 0.02]
   double clearance =
-      0;          ///< height above the table below which nothing is taken, metres; 0: from noise [0, 0.2]
+      0;  ///< height above the table below which nothing is taken, metres; 0: from noise [0, 0.2]
+  bool separate_views = false;  ///< a few pictures from far apart rather than a camera's stream: each counts
   int at_u = -1;  ///< a pixel of the object in the first picture; -1: the one nearest the middle
   int at_v = -1;  ///< likewise
   Kernels kernels = Kernels::automatic;  ///< bodies of the integer kernels

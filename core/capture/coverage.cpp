@@ -21,13 +21,13 @@ int sector_of(double x, double y) noexcept {
 
 }  // namespace
 
-void Coverage::add(const RigidTransform& pose) noexcept {
+void Coverage::add(const RigidTransform& pose, std::uint32_t times) noexcept {
   const Vector3 camera = pose.inverse().translation;
   const double distance = camera.norm();
   if (!(distance > 0)) return;
   const double sine = camera.z() / distance;
   const int height = sine < kSin20 ? 0 : sine < kSin50 ? 1 : 2;
-  ++views_[static_cast<std::size_t>(height * kSectors + sector_of(camera.x(), camera.y()))];
+  views_[static_cast<std::size_t>(height * kSectors + sector_of(camera.x(), camera.y()))] += times;
 }
 
 bool Coverage::seen(int sector) const noexcept {

@@ -16,8 +16,8 @@ class Coverage {
   static constexpr int kSectors = 8, kHeights = 3;
 
   void clear() noexcept { *this = Coverage(); }
-  /// A view at `pose` (camera <- model, the model's z upright) was fused.
-  void add(const RigidTransform& pose) noexcept;
+  /// A view at `pose` (camera <- model, the model's z upright) was fused; it counts as `times` of them.
+  void add(const RigidTransform& pose, std::uint32_t times = 1) noexcept;
   [[nodiscard]] std::uint32_t views(int sector, int height) const noexcept {
     return views_[static_cast<std::size_t>(height * kSectors + sector)];
   }

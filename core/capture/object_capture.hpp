@@ -15,6 +15,7 @@
 #include "core/capture/joint_alignment.hpp"
 #include "core/capture/keyframes.hpp"
 #include "core/capture/object_cells.hpp"
+#include "core/capture/pose_trail.hpp"
 
 namespace pliant {
 
@@ -64,6 +65,11 @@ class ObjectCapture {
   [[nodiscard]] const CaptureStatus& process(const DepthFrame& frame,
                                              const RigidTransform& camera_from_world) noexcept;
 
+  /// The same for a view whose pose (camera <- model) is known to a few millimetres and degrees and may be
+  /// wrong: aligned from there, and fused only when nearly all of it fits. Otherwise lost, and not counted.
+  [[nodiscard]] const CaptureStatus& process_near(const DepthFrame& frame,
+                                                  const RigidTransform& camera_from_model) noexcept;
+
   /// Aligns the kept views to each other and fuses the volume from them anew. Takes as long as some hundred
   /// pictures.
   JointFit finish() noexcept;
@@ -76,16 +82,23 @@ class ObjectCapture {
   [[nodiscard]] double table_height() const noexcept { return table_height_; }
 
  private:
+  /// What is known of a picture's pose beforehand.
+  struct GivenPose {
+    enum class Kind : std::uint8_t {
+      none,
+      near,  // camera <- model, to be aligned
+      exact  // camera <- world
+    };
+    Kind kind = Kind::none;
+    RigidTransform pose;
+  };
   void lay_out(Workspace& workspace, const Intrinsics& camera, const VolumePlan& plan) noexcept;
-  [[nodiscard]] bool begin() noexcept;
-  [[nodiscard]] bool follow() noexcept;
-  [[nodiscard]] bool find_again(std::span<const ViewPoint> points, ViewFit& fit) noexcept;
+  const CaptureStatus& judge_picture(const DepthFrame& frame, const GivenPose& given) noexcept;
+  [[nodiscard]] bool begin(const GivenPose& given) noexcept;
+  [[nodiscard]] bool follow(const GivenPose& given) noexcept;
   void fuse(const DepthFrame& frame) noexcept;
   void keep(const DepthFrame& frame) noexcept;
-  void judge_picture(const DepthFrame& frame) noexcept;
-  [[nodiscard]] RigidTransform first_pose(const Target& target) noexcept;
   [[nodiscard]] ViewAlignSettings align_settings() const noexcept;
-  [[nodiscard]] static bool good(const ViewFit& fit) noexcept;
 
   Intrinsics camera_;
   CaptureSettings settings_;
@@ -107,10 +120,9 @@ class ObjectCapture {
   std::int32_t normal_span_ = 0;
 
   bool begun_ = false;
-  bool known_pose_ = false;       // of the picture in hand
-  RigidTransform given_, world_;  // camera <- world of it; world <- model
-  RigidTransform pose_, before_;  // camera <- model of the last two fused pictures
-  std::int64_t pose_frame_ = 0, before_frame_ = 0;
+  bool all_known_ = false;           // every pose so far was given exactly
+  RigidTransform world_from_model_;  // of exact poses
+  PoseTrail trail_;                  // of the fused pictures
   double table_height_ = 0;
   CaptureStatus status_;
   CaptureFigures figures_;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "core/fixed/integer_root.hpp"
-
 namespace pliant {
 
 namespace {
@@ -242,14 +240,14 @@ std::size_t ObjectCells::sample(const Surface& surface, std::int32_t normal_span
   std::size_t all = 0;
   for (const std::uint8_t taken : taken_) all += taken;
   if (all == 0) return 0;
-  // Every step-th cell of every step-th row: at most as many as there is room for.
-  const auto ratio = static_cast<std::uint32_t>((all + out.size() - 1) / out.size());
-  int step = static_cast<int>(integer_sqrt(ratio));
-  if (static_cast<std::uint32_t>(step * step) < ratio) ++step;
-  std::size_t count = 0;
-  for (int cv = step / 2; cv < height_; cv += step)
-    for (int cu = step / 2; cu < width_; cu += step) {
-      if (taken_[static_cast<std::size_t>(cv * width_ + cu)] == 0 || count == out.size()) continue;
+  // As many as there is room for, spread evenly in the order of rows.
+  std::size_t count = 0, seen = 0;
+  for (int cv = 0; cv < height_; ++cv)
+    for (int cu = 0; cu < width_; ++cu) {
+      if (taken_[static_cast<std::size_t>(cv * width_ + cu)] == 0) continue;
+      const std::size_t before = seen * out.size() / all;
+      ++seen;
+      if (all > out.size() && before == seen * out.size() / all) continue;
       const std::uint16_t z8 = surface.depth_at(2 * cu, 2 * cv);
       Normal16 n;
       if (z8 == 0 || !surface.normal(2 * cu, 2 * cv, Surface::normal_step(z8, PixelSpan{normal_span}), n))

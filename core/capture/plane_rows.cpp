@@ -25,7 +25,8 @@ RobustMoments about(std::span<const PlaneRow> rows, const ResidualSpread& spread
   robust.centre = centre;
   robust.scale = std::max((spread.median() * 95) >> 6, std::max(noise / 2, 1));
   // Tukey's constant is 4.685
-  robust.moments = weighted(rows, centre, std::max((robust.scale * 300) >> 6, noise * 8 / 5) * 16);
+  robust.limit = std::max((robust.scale * 300) >> 6, noise * 8 / 5) * 16;
+  robust.moments = weighted(rows, centre, robust.limit);
   return robust;
 }
 

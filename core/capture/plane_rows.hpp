@@ -18,6 +18,7 @@ struct PlaneRow {
 struct RobustMoments {
   PlaneMoments moments;    ///< about `centre`
   IntPoint centre;         ///< 1/16 mm
+  std::int32_t limit = 0;  ///< of Tukey's weights, 1/256 mm
   std::int32_t scale = 0;  ///< 1.4826 times the median of |residual|, at least half of the noise, 1/16 mm
 };
 

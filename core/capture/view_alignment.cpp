@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/capture/weak_motions.hpp"
 #include "core/track/associate.hpp"
 #include "core/track/plane_equations.hpp"
 
@@ -56,10 +57,9 @@ Vector3 metres(const IntPoint& p) noexcept {
 
 /// Solves for the motion of the view in the model's frame, drawn to `predicted`. False when there is no
 /// answer.
-bool step(const RobustMoments& robust, const RigidTransform& predicted, const ViewAlignSettings& settings,
-          RigidTransform& model_from_camera, Vector6& x) noexcept {
+bool step(const RobustMoments& robust, PlaneEquations equations, const RigidTransform& predicted,
+          const ViewAlignSettings& settings, RigidTransform& model_from_camera, Vector6& x) noexcept {
   if (robust.moments.rows < kFewestRows) return false;
-  PlaneEquations equations = plane_equations(robust.moments);
   const Vector3 centre = metres(robust.centre);
   const Vector6 back = motion_between(predicted.inverse(), model_from_camera, centre);
   const double spread = robust.scale / kUnitsPerMetre;
@@ -75,27 +75,6 @@ bool step(const RobustMoments& robust, const RigidTransform& predicted, const Vi
   model_from_camera = motion_about(x, centre) * model_from_camera;
   model_from_camera.rotation = orthonormalised(model_from_camera.rotation);
   return true;
-}
-
-/// Square root of the least eigenvalue of the rows' matrix, in units of the distance that the points move.
-double held_share(const PlaneMoments& moments, double radius) noexcept {
-  if (moments.weight == 0) return 0;
-  Matrix6 a = plane_equations(moments).a / (static_cast<double>(moments.weight) / 256.0);
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) a(i, j) /= (i < 3 ? radius : 1.0) * (j < 3 ? radius : 1.0);
-  // Inverse iteration: converges to the least eigenvalue, or into the space of several that are as small.
-  constexpr int kRounds = 16;
-  a += 1e-6 * Matrix6::Identity();
-  const auto solver = a.ldlt();
-  Vector6 v;
-  v << 1, 0.8, -0.6, 0.7, -0.9, 0.5;
-  double least = 1;
-  for (int i = 0; i < kRounds; ++i) {
-    const Vector6 next = solver.solve(v / v.norm());
-    least = 1 / next.norm();
-    v = next;
-  }
-  return std::sqrt(least);
 }
 
 double radius_of(std::span<const PlaneRow> rows, const IntPoint& centre) noexcept {
@@ -130,16 +109,16 @@ ViewFit align_to_volume(std::span<const ViewPoint> points, const DistanceVolume&
       fit.rms =
           std::sqrt(static_cast<double>(robust.moments.square) / static_cast<double>(robust.moments.weight)) *
           kResidualMetres;
+    if (counts.rows == 0) break;
+    const double radius = radius_of(used, robust.centre);
+    const WeakMotions weak = weigh_weak_motions(used, robust, radius);
     Vector6 x;
-    const bool last =
-        i == settings.iterations || !step(robust, predicted, settings, inverse, x) || is_still(x);
-    if (!last) continue;
-    if (counts.rows > 0) {
-      const double radius = radius_of(used, robust.centre);
-      fit.held = held_share(robust.moments, radius);
-      // As characterisability has it: the slip moves the surface along its normal by half of the noise.
-      fit.needed = std::clamp(0.5 * settings.noise / kUnitsPerMetre / (0.1 * radius), 0.04, 0.3);
-    }
+    if (i < settings.iterations && step(robust, weak.equations, predicted, settings, inverse, x) &&
+        !is_still(x))
+      continue;
+    fit.held = weak.held;
+    // As characterisability has it: the slip moves the surface along its normal by half of the noise.
+    fit.needed = std::clamp(0.5 * settings.noise / kUnitsPerMetre / (0.1 * radius), 0.04, 0.3);
     break;
   }
   fit.pose = inverse.inverse();
@@ -184,7 +163,8 @@ bool align_to_picture(std::span<const ViewPoint> points, const PosedPicture& oth
     const auto reach = static_cast<std::int32_t>(gate * narrowing * kUnitsPerMetre);
     const std::size_t count = pair_rows(points, inverse.inverse(), other, projector, rays, reach, rows);
     Vector6 x;
-    if (!step(robust_moments(rows.first(count), settings.noise), start, settings, inverse, x)) return false;
+    const RobustMoments robust = robust_moments(rows.first(count), settings.noise);
+    if (!step(robust, plane_equations(robust.moments), start, settings, inverse, x)) return false;
     if (is_still(x)) break;
   }
   pose = inverse.inverse();

@@ -37,6 +37,16 @@ template <typename Sample>
     for (int y = 0; y < size[1]; ++y)
       for (int x = 0; x < size[0]; ++x) samples[in_layer(x, y)] = sample(x, y, z);
   };
+  // All corners of a cell are known, and not all on one side.
+  const auto passes = [](const std::array<double, 4>& lower, const std::array<double, 4>& upper) {
+    bool inside = false, outside = false;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (const double value : {lower[i], upper[i]}) {
+        if (std::isnan(value)) return false;
+        (value < 0 ? inside : outside) = true;
+      }
+    return inside && outside;
+  };
   const auto node = [&](int x, int y, int z) -> Vector3 { return low + cell * Vector3(x, y, z); };
   SurfaceNet net;
 
@@ -48,9 +58,13 @@ template <typename Sample>
         const auto value = [&](const std::array<int, 3>& n) {
           return (n[2] == z ? here : above)[in_layer(n[0], n[1])];
         };
+        // Most cells hold nothing.
+        const std::size_t at = in_layer(x, y);
+        if (!passes({here[at], here[at + 1], here[at + width], here[at + width + 1]},
+                    {above[at], above[at + 1], above[at + width], above[at + width + 1]}))
+          continue;
         Vector3 sum = Vector3::Zero();
         int crossings = 0;
-        bool known = true;
         for (int axis = 0; axis < 3; ++axis)
           for (int corner = 0; corner < 4; ++corner) {
             std::array<int, 3> a{x, y, z};
@@ -60,29 +74,28 @@ template <typename Sample>
             ++b[static_cast<std::size_t>(axis)];
             const double fa = value(a);
             const double fb = value(b);
-            known = known && !std::isnan(fa) && !std::isnan(fb);
             if ((fa < 0) == (fb < 0)) continue;
             const Vector3 pa = node(a[0], a[1], a[2]);
             const Vector3 pb = node(b[0], b[1], b[2]);
             sum += pa + (pb - pa) * (fa / (fa - fb));
             ++crossings;
           }
-        if (crossings == 0 || !known) continue;
-        cells[in_layer(x, y)] = static_cast<std::uint32_t>(net.vertices.size());
+        cells[at] = static_cast<std::uint32_t>(net.vertices.size());
         net.vertices.push_back(sum / crossings);
       }
   };
   // Two triangles across every grid edge that the surface cuts, joined along the shorter diagonal.
   const auto place_triangles = [&](int z) {
     for (int y = 1; y + 1 < size[1]; ++y)
-      for (int x = 1; x + 1 < size[0]; ++x)
+      for (int x = 1; x + 1 < size[0]; ++x) {
+        const double from = here[in_layer(x, y)];
+        if (std::isnan(from)) continue;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          const double from = here[in_layer(x, y)];
           const double to = axis == 0   ? here[in_layer(x + 1, y)]
                             : axis == 1 ? here[in_layer(x, y + 1)]
                                         : above[in_layer(x, y)];
           const bool inside = from < 0;
-          if (std::isnan(from) || std::isnan(to) || inside == (to < 0)) continue;
+          if (std::isnan(to) || inside == (to < 0)) continue;
           std::array<std::uint32_t, 4> ring{};
           bool whole = true;
           for (std::size_t i = 0; i < 4; ++i) {
@@ -100,6 +113,7 @@ template <typename Sample>
           net.triangles.push_back({ring[first], ring[first + 1], ring[first + 2]});
           net.triangles.push_back({ring[first], ring[first + 2], ring[(first + 3) % 4]});
         }
+      }
   };
 
   fill(here, 0);

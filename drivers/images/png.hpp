@@ -27,6 +27,9 @@ struct GreyView16 {
   int stride = 0;  ///< pixels from one row to the next
 };
 
+/// Does the file begin as PNG files do, or is its name that of one?
+[[nodiscard]] bool is_png(const std::filesystem::path& file);
+
 /// Reads PNG files, keeping its buffers from one file to the next.
 ///
 /// Only 16-bit grey without alpha, at most limits::kMaxFrameWidth × kMaxFrameHeight; anything else, a file

@@ -8,6 +8,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <memory>
 
 #include "core/limits.hpp"
@@ -106,6 +107,13 @@ Outcome load(const std::filesystem::path& file, std::vector<std::byte>& data) {
 }
 
 }  // namespace
+
+bool is_png(const std::filesystem::path& file) {
+  std::array<char, 4> start{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), start.size());
+  return file.extension() == ".png" || (stream && start == std::array<char, 4>{'\x89', 'P', 'N', 'G'});
+}
 
 Outcome PngReader::read(const std::filesystem::path& file, GreyImage16& image) {
   if (Outcome loaded = load(file, data_); !loaded) return loaded;

@@ -24,6 +24,10 @@ inline constexpr int kMessageKinds = 6;
 /// "_POSE", "_REGIONS", "_DEFORMED", "_STATUS", "_DEPTH", "_MODEL".
 [[nodiscard]] std::string_view channel_suffix(MessageKind kind) noexcept;
 
+/// Behind the prefix of what the capture of a model publishes: it is no tracked object, so it keeps off the
+/// tracker's channels. The viewer listens to both.
+inline constexpr const char* kCaptureWord = "_CAPTURE";
+
 /// No message body is longer, but for depth.
 inline constexpr std::size_t kMaxMessageBytes = 16000;
 /// Fits one datagram with the channel's name.

@@ -11,12 +11,21 @@
 
 namespace pliant {
 
+/// What is announced of a model; borrowed.
+struct AnnouncedModel {
+  std::uint64_t id = 0;               ///< ModelHeader::checksum
+  double spacing = 0;                 ///< mean distance of a point to its nearest other, metres
+  std::span<const Point3f> points;    ///< model frame, metres; at least one
+  std::span<const Normal16> normals;  ///< one a point
+};
+
 class ModelMessages {
  public:
   /// Points of one message: it stays below kMaxMessageBytes.
   static constexpr std::size_t kPointsPerPart = 1700;
 
   /// `model` is not needed afterwards.
+  explicit ModelMessages(const AnnouncedModel& model);
   explicit ModelMessages(const ModelView& model);
 
   /// At least one.

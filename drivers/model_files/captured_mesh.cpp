@@ -9,6 +9,7 @@
 #include "drivers/geometry_files/surface_net.hpp"
 #include "drivers/model_files/mesh.hpp"
 #include "drivers/model_files/mesh_normals.hpp"
+#include "drivers/model_files/mesh_smoothing.hpp"
 
 namespace pliant {
 
@@ -75,6 +76,7 @@ Geometry captured_mesh(const DistanceVolume& volume, const CapturedMeshSettings&
   if (mesh.triangles.empty()) return geometry;
   drop_islands(mesh, settings.least_part);
   drop_loose(mesh);
+  smooth_grain(mesh, settings.smoothing);
   const auto put = [](const Vector3& v, std::vector<Point3f>& to) {
     to.push_back({static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
   };

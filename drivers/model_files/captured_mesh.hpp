@@ -13,6 +13,9 @@ struct CapturedMeshSettings {
   double least_part = 0.1;
   /// Height of the table in the model's frame, metres; what lies lower, and flat remains on it, goes.
   double table_height = -1e3;
+  /// Rounds of smooth_grain() [0, 100]: a voxel's edge is about what the sensor's noise leaves uncertain, so
+  /// what is as short as some voxels is grain, and would turn the normals.
+  int smoothing = 10;
 };
 
 /// Triangles wound outward and unit normals, model frame, metres; with a border where nothing was seen. Empty

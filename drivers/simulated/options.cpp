@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kObjects{"cushion", "figure", "box"};
 constexpr std::array<std::string_view, 6> kKeys{"seed", "noise", "frames", "width", "height", "motion"};
 constexpr std::array<std::string_view, 2> kNoises{"structure", "none"};
-constexpr std::array<std::string_view, 3> kMotions{"handled", "turned", "circled"};
+constexpr std::array<std::string_view, 4> kMotions{"handled", "turned", "circled", "carried"};
 constexpr std::size_t kShown = 60;  ///< characters of a wrong word that an error repeats
 
 Error bad(std::string what) {

@@ -14,7 +14,8 @@ enum class ObjectKind { cushion, figure, box };
 enum class Motion {
   handled,  ///< the object is moved and deformed
   turned,   ///< the object stands still on the table and is turned once round, and a little more
-  circled   ///< the object rests, the camera goes once round it, and a little more, up and down, near and far
+  circled,  ///< the object rests, the camera goes once round it, and a little more, up and down, near and far
+  carried   ///< likewise, in a hand: unsteadily
 };
 
 struct Options {
@@ -24,7 +25,7 @@ struct Options {
   std::int64_t frames = 300;        ///< [1, 10000000]
   int width = 640;                  ///< pixels [160, 1280]
   int height = 480;                 ///< pixels [120, 960]
-  Motion motion = Motion::handled;  ///< motion=handled (the default), turned or circled
+  Motion motion = Motion::handled;  ///< motion=handled (the default), turned, circled or carried
 };
 
 /// Parses "cushion|figure|box[?key=value[&key=value…]]", with or without "simulated:" before it.

@@ -9,6 +9,7 @@
 #include "drivers/simulated/motion.hpp"
 #include "drivers/simulated/options.hpp"
 #include "drivers/simulated/scene.hpp"
+#include "drivers/simulated/staging.hpp"
 #include "drivers/simulated/structure_sensor.hpp"
 
 namespace pliant {
@@ -19,11 +20,6 @@ using namespace simulated;
 
 constexpr double kVisibleTolerance = 0.004;  ///< metres; half a pixel of a surface seen at 70 degrees
 constexpr std::int64_t kFewestVisible = 30;  ///< vertices of an object that is present
-
-struct Stage {
-  std::unique_ptr<Actor> actor;
-  View view;
-};
 
 Stage stage_for(ObjectKind object) {
   switch (object) {
@@ -59,6 +55,22 @@ void measure_exactly(const DisparityImage& scene, std::span<std::uint16_t> depth
     const std::int64_t z = d > 0 ? (kMillimetres + d / 2) / d : 0;
     depth[i] = z < 65536 ? static_cast<std::uint16_t>(z) : std::uint16_t{0};
   }
+}
+
+/// What a hand adds to the camera's way: sway of some millimetres at one to two hertz, tremor of a fifth of a
+/// degree at five to seven.
+RigidTransform tremor(std::int64_t number) {
+  const double seconds = static_cast<double>(number) / 30;
+  RigidTransform shaken;
+  shaken.translation = Vector3(0.005 * sine(1.1 * seconds), 0.004 * sine(1.7 * seconds + 0.3),
+                               0.004 * sine(0.9 * seconds + 0.6));
+  const auto turns = [&](double hertz, double start) {
+    return kDegree * (0.2 * sine(hertz * seconds + start) + 0.5 * sine(0.2 * hertz * seconds + start));
+  };
+  shaken.rotation = rotation_about(Vector3::UnitX(), turns(5.3, 0.1)) *
+                    rotation_about(Vector3::UnitY(), turns(6.1, 0.7)) *
+                    rotation_about(Vector3::UnitZ(), turns(6.9, 0.4));
+  return shaken;
 }
 
 class Simulated final : public SimulatedSource {
@@ -130,7 +142,9 @@ class Simulated final : public SimulatedSource {
       view.azimuth = turned;
       view.pitch = 36 + 17 * sine(3 * turned);
       view.distance = view_.distance * (0.92 + 0.08 * sine(2 * turned));
+      if (options_.motion == Motion::carried) view.azimuth += 0.012 * sine(5 * turned);
       camera_from_table_ = camera_from_table(view);
+      if (options_.motion == Motion::carried) camera_from_table_ = tremor(number_) * camera_from_table_;
       background_.clear();
       surroundings_.draw(camera_from_table_, background_);
     }
@@ -186,10 +200,14 @@ class Simulated final : public SimulatedSource {
 
 }  // namespace
 
+std::unique_ptr<SimulatedSource> simulated::stage_source(const Options& options, Stage stage) {
+  return std::make_unique<Simulated>(options, std::move(stage));
+}
+
 Result<std::unique_ptr<SimulatedSource>> open_simulated(std::string_view text) {
   const Result<Options> options = parse_options(text);
   if (!options) return options.error();
-  return std::unique_ptr<SimulatedSource>(std::make_unique<Simulated>(*options, stage_for(options->object)));
+  return stage_source(*options, stage_for(options->object));
 }
 
 }  // namespace pliant

@@ -34,7 +34,7 @@ class SimulatedSource : public DepthSource {
 };
 
 /// Opens "cushion|figure|box[?key=value&…]", with or without "simulated:" before it; the keys are those of
-/// options.hpp: seed, noise=structure|none, frames, width, height, motion=handled|turned|circled.
+/// options.hpp: seed, noise=structure|none, frames, width, height, motion=handled|turned|circled|carried.
 /// ErrorKind::bad_input names what is unknown or out of range.
 [[nodiscard]] Result<std::unique_ptr<SimulatedSource>> open_simulated(std::string_view options);
 

@@ -5,11 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "core/detect/frame_detector.hpp"
 #include "drivers/model_files/outside_view.hpp"
 #include "drivers/simulated/disparity_image.hpp"
 #include "drivers/simulated/structure_sensor.hpp"
-#include "firmware-app/pipeline/memory_block.hpp"
+#include "firmware-app/commands/one_shot_detector.hpp"
 
 namespace pliant {
 
@@ -92,21 +91,8 @@ ExpectedDetection expect_detection(const ModelView& model) {
   expected.distance = std::clamp(diameter * camera.fy / (kFills * camera.height), kNearest, kFarthest);
   const Discs discs = discs_of(cloud, 1.1 * model.spacing());
 
-  Surface surface;
-  FrameDetector detector;
-  const auto lay_out = [&](Workspace& workspace) {
-    surface.lay_out(workspace, camera);
-    detector.lay_out(workspace, model, camera, {});
-  };
-  Workspace measuring;
-  lay_out(measuring);
-  Result<MemoryBlock> block = MemoryBlock::allocate(measuring.used());
-  if (!block) return expected;
-  Workspace workspace(block->bytes());
-  lay_out(workspace);
-  surface.start(camera, sensor);
-  detector.start(model, camera, sensor, Kernels::automatic);
-
+  const Result<std::unique_ptr<OneShotDetector>> detector = OneShotDetector::create(model, camera, sensor);
+  if (!detector) return expected;
   simulated::DisparityImage scene(camera);
   simulated::StructureSensor noise(camera, sensor, 1);
   std::vector<std::uint16_t> depth(scene.pixels().size());
@@ -122,14 +108,9 @@ ExpectedDetection expect_detection(const ModelView& model) {
     scene.draw_plane(Vector3(0, 0, -1), -(expected.distance + diameter), &everywhere, nullptr);
     scene.draw(placed, discs.triangles, {});
     noise.measure(scene, static_cast<std::int64_t>(k), depth);
-    surface.build({depth.data(), camera.width, camera.height, camera.width, 0, 0},
-                  {0, 0, camera.width, camera.height});
-    detector.begin(surface);
-    while (detector.step(1 << 20) == DetectState::working) {
-    }
     ++expected.views;
-    if (detector.state() != DetectState::found) continue;
-    const RigidTransform& found = detector.best().pose;
+    if (!(*detector)->look({depth.data(), camera.width, camera.height, camera.width, 0, 0})) continue;
+    const RigidTransform& found = (*detector)->best().pose;
     constexpr double kCos10 = 0.98481;
     const double apart = (found * model.centre() - pose * model.centre()).norm();
     if (cos_angle(found.rotation.transpose() * pose.rotation) > kCos10 && apart < 0.1 * diameter)

@@ -1,18 +1,20 @@
 // pliant model capture: the sensor itself makes the model, of an object that is turned before it, or around
-// which it is carried.
+// which it is carried; or single views from files do.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "core/capture/object_capture.hpp"
-#include "drivers/model_files/captured_mesh.hpp"
-#include "drivers/model_files/describe_model.hpp"
 #include "drivers/recording/pose_list.hpp"
+#include "drivers/view_files/view_files.hpp"
 #include "firmware-app/commands/capture_guide.hpp"
+#include "firmware-app/commands/capture_show.hpp"
+#include "firmware-app/commands/captured_model.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/commands/place_views.hpp"
 #include "firmware-app/pipeline/memory_block.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
 
@@ -21,7 +23,8 @@ namespace pliant {
 namespace {
 
 struct CaptureOptions {
-  std::string source, output, ply, sensor, poses;
+  std::string source, output, ply, sensor, poses, camera, units = "m", lcm_url;
+  std::vector<std::string> views;
   std::vector<int> at;
   std::int64_t frames = -1;
   CaptureSettings capture;
@@ -42,6 +45,11 @@ struct Taken {
 Taken take_pictures(DepthSource& source, const CaptureOptions& options, ObjectCapture& capture) {
   Taken taken;
   CaptureGuide guide(source.rate());
+  std::string warning, told;
+  std::int64_t told_at = 0;
+  const std::unique_ptr<CaptureShow> show =
+      CaptureShow::open(options.lcm_url, options.source, source.intrinsics(), source.rate(), warning);
+  if (!warning.empty()) print_warning(warning);
   LiveLine line;
   SourceItem item;
   std::int64_t count = 0;
@@ -63,71 +71,100 @@ Taken take_pictures(DepthSource& source, const CaptureOptions& options, ObjectCa
       ++taken.bad_frames;
       continue;
     }
-    guide.take(
-        known != nullptr ? capture.process(item.frame, known->transform()) : capture.process(item.frame),
-        capture.coverage());
+    const CaptureStatus& status =
+        known != nullptr ? capture.process(item.frame, known->transform()) : capture.process(item.frame);
+    guide.take(status, capture.coverage());
     if (const std::string advice = guide.advice(); !advice.empty()) {
       line.clear();
       print_warning(advice);
+      told = " | " + advice;
+      told_at = count;
     }
+    if (static_cast<double>(count - told_at) > 5 * source.rate()) told.clear();
+    if (show != nullptr) show->show(item.frame, capture, status, guide.line() + told);
     line.show(guide.line());
   }
   line.clear();
   return taken;
 }
 
-/// The model, or the same beside the temporary files where its own place cannot be written: a capture is not
-/// repeated at will.
-int keep_model(const std::string& output, const BuiltModel& built) {
-  const Outcome written = write_model(output, built.image);
-  if (written) return kExitDone;
-  std::error_code fault;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(fault);
-  const std::filesystem::path refuge =
-      folder / (std::filesystem::path(output).filename().string() + ".rescued");
-  if (fault || !write_model(refuge, built.image)) return report(written.error());
-  return report({ErrorKind::write,
-                 fmt::format("{}; the model is kept as {}", written.error().message, refuge.string())});
+/// Views of unknown poses, from any source that can be read to its end.
+Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, ObjectCapture& capture) {
+  std::vector<std::vector<std::uint16_t>> pictures;
+  std::vector<DepthFrame> views;
+  SourceItem item;
+  for (source.next(0, item); item.event == SourceEvent::frame; source.next(0, item)) {
+    const std::ptrdiff_t pixels = std::ptrdiff_t{item.frame.stride} * item.frame.height;
+    pictures.emplace_back(item.frame.depth, item.frame.depth + pixels);
+    views.push_back(item.frame);
+    views.back().depth = pictures.back().data();
+  }
+  LiveLine line;
+  const Result<std::vector<std::size_t>> left =
+      place_views(views, source.intrinsics(), source.sensor(), capture, [&](std::size_t placed) {
+        line.show(fmt::format("placing the views: {} of {}", placed, views.size()));
+      });
+  line.clear();
+  if (!left) return left.error();
+  for (const std::size_t i : *left)
+    print_warning(fmt::format("{}: left out, {}", options.views[i],
+                              capture.figures().fused == 0
+                                  ? "no object stands before the background"
+                                  : "its place among the other views is not clear; give --poses, or views "
+                                    "that share more"));
+  return Taken{};
 }
 
-int build_and_write(const CaptureOptions& options, const ObjectCapture& capture, const JointFit& joint) {
-  CapturedMeshSettings cleaning;
-  cleaning.table_height = capture.table_height() + options.capture.clearance;
-  const Geometry mesh = captured_mesh(capture.volume(), cleaning);
-  if (mesh.triangles.empty())
-    return report(
-        {ErrorKind::bad_input, "too little of the object was seen to make a model of; show it longer"});
-  if (!options.ply.empty())
-    if (const Outcome written = write_ply(options.ply, mesh); !written)
-      print_warning(written.error().message);
-  ModelBuildSettings settings;
-  settings.wound_outward = true;
-  const Coverage& coverage = capture.coverage();
-  // Half a turn and more shows some of every side.
-  settings.front_only = coverage.sectors_seen() <= Coverage::kSectors / 2;
-  const Result<BuiltModel> built = build_model(mesh, settings);
-  if (!built) return report({built.error().kind, "the captured surface " + built.error().message});
-  for (const std::string& warning : built->warnings) print_warning(warning);
-  const int code = keep_model(options.output, *built);
-  ModelView view;
-  if (const ModelFault fault = ModelView::open(built->image, view); fault != ModelFault::none)
-    return report({ErrorKind::write, fmt::format("internal error: the new model {}", describe(fault))});
-  const CaptureFigures& figures = capture.figures();
-  std::string text = fmt::format("fused: {} of {} pictures, {} kept views\n", figures.fused, figures.frames,
-                                 capture.keyframes().all().size());
-  if (joint.pairs > 0)
-    text += fmt::format("views fit each other: within {:.2f} mm, {:.2f} mm before the drift was closed\n",
-                        1000 * joint.after, 1000 * joint.before);
-  const std::string missing = sides_missing(coverage);
-  text += fmt::format("seen: {} of {} sides{}\n", coverage.sectors_seen(), Coverage::kSectors,
-                      missing.empty() ? "" : "; not " + missing);
-  text += describe_model(view);
-  return print(text) ? code : kExitFailed;
+Result<OpenSource> open_input(const CaptureOptions& options) {
+  if (!options.views.empty()) {
+    OpenSource open;
+    Result<std::unique_ptr<DepthSource>> views =
+        open_view_files(options.views, {options.camera, options.units == "mm" ? 0.001 : 1});
+    if (!views) return views.error();
+    open.source = std::move(*views);
+    return open;
+  }
+  if (options.source.empty())
+    return Error{ErrorKind::bad_input,
+                 "nothing to capture from: name a source (--source openni2:), or files of single views"};
+  SourceOptions source_options;
+  if (!options.sensor.empty()) {
+    const Result<SensorFile> sensor = read_sensor(options.sensor);
+    if (!sensor) return sensor.error();
+    source_options.sensor = *sensor;
+  }
+  return open_source(options.source, source_options);
+}
+
+/// Why nothing was captured, and the exit code.
+int report_nothing(const CaptureOptions& options, const Taken& taken, const ObjectCapture& object) {
+  if (taken.last == SourceEvent::lost) return report({ErrorKind::device, taken.fault});
+  if (!options.known.empty() && taken.bad_frames > 0 && object.figures().frames == 0)
+    return report({ErrorKind::bad_input, options.poses + ": no pose has the time of a frame"});
+  if (options.views.empty() && object.figures().frames == 0)
+    return report({ErrorKind::bad_input,
+                   taken.fault.empty() ? "the source has no frame" : "no frame is usable: " + taken.fault});
+  print_warning("nothing was captured: in no picture did an object stand before the background");
+  return kExitNotFound;
+}
+
+/// Checks the words that hang together; empty when all is well.
+std::string refused_words(const CaptureOptions& options) {
+  if (!options.views.empty() && !options.source.empty())
+    return "--source and files of views exclude each other";
+  if (!options.camera.empty() && options.views.empty()) return "--camera is for files of single views";
+  if (options.views.size() > kMaxKeyframes)
+    return fmt::format("{} views are too many, {} at most; make a recording of them (--source recording:DIR)",
+                       options.views.size(), kMaxKeyframes);
+  return "";
 }
 
 int capture(const CaptureOptions& given) {
   const StopSignal stop;
   CaptureOptions options = given;
+  if (const std::string fault = refused_words(options); !fault.empty())
+    return report({ErrorKind::bad_input, fault});
+  options.capture.separate_views = !options.views.empty();
   if (options.at.size() == 2) {
     options.capture.at_u = options.at[0];
     options.capture.at_v = options.at[1];
@@ -138,13 +175,7 @@ int capture(const CaptureOptions& given) {
     options.known = std::move(*poses);
     if (options.known.empty()) return report({ErrorKind::bad_input, options.poses + ": holds no pose"});
   }
-  SourceOptions source_options;
-  if (!options.sensor.empty()) {
-    const Result<SensorFile> sensor = read_sensor(options.sensor);
-    if (!sensor) return report(sensor.error());
-    source_options.sensor = *sensor;
-  }
-  Result<OpenSource> source = open_source(options.source, source_options);
+  Result<OpenSource> source = open_input(options);
   if (!source) return report(source.error());
   const Intrinsics& camera = source->source->intrinsics();
   const SensorDescription& sensor = source->source->sensor();
@@ -164,24 +195,19 @@ int capture(const CaptureOptions& given) {
                          plan.cells, 1000 * plan.voxel / kUnitsPerMetre)))
     return kExitFailed;
 
-  const Taken taken = take_pictures(*source->source, options, object);
+  const bool to_be_placed = !options.views.empty() && options.known.empty();
+  const Result<Taken> taken = to_be_placed ? take_views(*source->source, options, object)
+                                           : take_pictures(*source->source, options, object);
   source->source->close();
-  if (object.figures().fused == 0) {
-    if (taken.last == SourceEvent::lost) return report({ErrorKind::device, taken.fault});
-    if (object.figures().frames == 0)
-      return report({ErrorKind::bad_input, !options.known.empty() && taken.bad_frames > 0
-                                               ? options.poses + ": no pose has the time of a frame"
-                                           : taken.fault.empty() ? "the source has no frame"
-                                                                 : "no frame is usable: " + taken.fault});
-    print_warning("nothing was captured: in no picture did an object stand before the background");
-    return kExitNotFound;
-  }
+  if (!taken) return report(taken.error());
+  if (object.figures().fused == 0) return report_nothing(options, *taken, object);
   LiveLine line;
   line.show("closing the drift and fusing the views");
   const JointFit joint = object.finish();
   line.clear();
-  const int code = build_and_write(options, object, joint);
-  if (code == kExitDone && taken.last == SourceEvent::lost) return report({ErrorKind::device, taken.fault});
+  const int code =
+      write_captured_model({options.output, options.ply, options.capture.clearance}, object, joint);
+  if (code == kExitDone && taken->last == SourceEvent::lost) return report({ErrorKind::device, taken->fault});
   return code;
 }
 
@@ -191,7 +217,16 @@ void add_model_capture(CLI::App& model, Work& work) {
   CLI::App* app =
       model.add_subcommand("capture", "Make a model file with the sensor: turn the object before it");
   auto options = std::make_shared<CaptureOptions>();
-  app->add_option("--source", options->source, kSourceHelp)->required()->type_name("URI");
+  app->add_option("--source", options->source, kSourceHelp)->type_name("URI");
+  app->add_option("VIEWS", options->views,
+                  "Instead of a source: files of single views, depth pictures (16-bit PNG) or clouds (PLY, "
+                  "PCD) in the frame of their camera; where they lie to each other is found, or given by "
+                  "--poses");
+  app->add_option("--camera", options->camera, "camera.toml of the depth pictures")->type_name("FILE");
+  app->add_option("--units", options->units, "Unit of the clouds' coordinates")
+      ->check(CLI::IsMember({"m", "mm"}).description(""))
+      ->type_name("m|mm")
+      ->capture_default_str();
   app->add_option("-o,--output", options->output, "Model file to write")->required()->type_name("OUT.model");
   app->add_option("--size", options->capture.size, "Edge of the cube that holds the object, metres")
       ->check(CLI::Range(0.05, 1.0).description(""))
@@ -217,9 +252,11 @@ void add_model_capture(CLI::App& model, Work& work) {
       ->type_name("FILE");
   app->add_option("--poses", options->poses,
                   "Known poses of the object, camera <- object, as lines '<seconds> tx ty tz qx qy qz qw' "
-                  "with the frames' "
-                  "stamps; left out: found by alignment")
+                  "with the frames' stamps (of files: their position, from 0); left out: found by alignment")
       ->type_name("FILE");
+  app->add_option("--lcm-url", options->lcm_url,
+                  "LCM network on which 'pliant view' sees the model grow, 'none' to publish nothing")
+      ->type_name("URL");
   app->add_option("--frames", options->frames, "Take this many frames from the source")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))
       ->type_name("N");

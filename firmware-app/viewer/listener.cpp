@@ -32,6 +32,25 @@ Outcome Listener::connect() {
     link_.fault = bus.error().message;
     return bus.error().kind == ErrorKind::device ? success() : Outcome(bus.error());
   }
+  // A capture shows its growing model beside the tracker's channels, on those with one more word.
+  std::unique_ptr<LcmSubscriber> both[2];
+  for (std::size_t i = 0; i < 2; ++i) {
+    auto subscriber = LcmSubscriber::create(*bus, link_.prefix + (i == 0 ? "" : kCaptureWord), handlers());
+    if (!subscriber) {
+      link_.fault = subscriber.error().message;
+      return subscriber.error().kind == ErrorKind::device ? success() : Outcome(subscriber.error());
+    }
+    both[i] = std::move(*subscriber);
+  }
+  bus_ = std::move(*bus);
+  subscriber_ = std::move(both[0]);
+  capture_ = std::move(both[1]);
+  link_.fault.clear();
+  heard_ = Clock::now();
+  return success();
+}
+
+LcmSubscriber::Handlers Listener::handlers() {
   LcmSubscriber::Handlers handlers;
   handlers.regions = [this](const RegionsMessage& message) { take_frame(frames_.take(message)); };
   handlers.deformed = [this](const DeformedMessage& message) { take_frame(frames_.take(message)); };
@@ -44,16 +63,7 @@ Outcome Listener::connect() {
   handlers.depth = [this](const DepthMessage& message) {
     if (depths_.take(message)) stream_.publish(PacketKind::depth, depth_packet(depths_.picture()));
   };
-  auto subscriber = LcmSubscriber::create(*bus, link_.prefix, std::move(handlers));
-  if (!subscriber) {
-    link_.fault = subscriber.error().message;
-    return subscriber.error().kind == ErrorKind::device ? success() : Outcome(subscriber.error());
-  }
-  bus_ = std::move(*bus);
-  subscriber_ = std::move(*subscriber);
-  link_.fault.clear();
-  heard_ = Clock::now();
-  return success();
+  return handlers;
 }
 
 void Listener::listen(int timeout_ms) {

@@ -30,6 +30,7 @@ class Listener {
 
  private:
   using Clock = std::chrono::steady_clock;
+  [[nodiscard]] LcmSubscriber::Handlers handlers();
   void tell_link();
   void take_frame(bool whole);
   void hear_others();
@@ -39,7 +40,7 @@ class Listener {
   Link link_;
   std::set<std::string> others_;
   std::shared_ptr<LcmBus> bus_;
-  std::unique_ptr<LcmSubscriber> subscriber_;
+  std::unique_ptr<LcmSubscriber> subscriber_, capture_;  // capture_ is heard with subscriber_: one bus
   lcm_subscription_t* everybody_ = nullptr;
   FrameAssembler frames_;
   ModelAssembler models_;

@@ -18,14 +18,17 @@ TEST_P(CaptureAccuracy, TheSurfaceIsThatOfTheTrueMesh) {
   run.finish();
   run.compare();
   const CaptureScore& s = run.score;
-  std::printf("%s: median %.2f mm, p95 %.2f mm, coverage %.1f %%, seam %.2f mm, drift %.2f mm, %zu views\n",
-              GetParam(), 1e3 * s.median, 1e3 * s.p95, 100 * s.coverage, 1e3 * s.seam, 1e3 * s.drift,
-              s.views);
+  std::printf(
+      "%s: median %.2f mm, p95 %.2f mm, coverage %.1f %%, seam %.2f mm, drift %.2f mm, %zu views, %lld "
+      "featureless\n",
+      GetParam(), 1e3 * s.median, 1e3 * s.p95, 100 * s.coverage, 1e3 * s.seam, 1e3 * s.drift, s.views,
+      static_cast<long long>(run.capture.figures().featureless));
   EXPECT_EQ(s.fused, s.frames);
   EXPECT_LE(s.median, 0.0015);
   EXPECT_LE(s.p95, 0.004);
   EXPECT_GE(s.coverage, 0.95);
   EXPECT_LE(s.seam, 0.003);
+  EXPECT_EQ(run.capture.figures().featureless, 0);
 }
 
 // The other three pairs of object and motion, with more frames, stand in BENCHMARK.md

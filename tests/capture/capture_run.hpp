@@ -24,6 +24,7 @@ namespace pliant::test {
 /// Distances in metres.
 struct CaptureScore {
   double median = 0, p95 = 0;  ///< of captured points from the true surface
+  double normals = 0;          ///< degrees that the captured normals are off, root mean square
   double coverage = 0;         ///< share of the surface that was shown
   double seam = 0;   ///< largest step of the error between neighbours, but for the largest thousandth
   double drift = 0;  ///< farthest that a tracked pose lay off the truth, at the object's middle
@@ -107,6 +108,14 @@ class CaptureRun {
     score.median = quantile(errors, 0.5);
     score.p95 = quantile(errors, 0.95);
     steps(signed_errors);
+    double square_turns = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      double square = 0;
+      const Vector3 normal = true_from_captured.rotation * to_vector(captured.normals[i]);
+      const double cosine = normal.dot(surface.normals[tree.nearest(points[i], square)]);
+      square_turns += std::pow(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / M_PI, 2);
+    }
+    score.normals = std::sqrt(square_turns / static_cast<double>(std::max<std::size_t>(1, points.size())));
     if (points.empty()) return;
     const NearestPoints captured_tree(points);
     std::size_t all = 0, found = 0;

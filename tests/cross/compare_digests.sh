@@ -2,7 +2,8 @@
 # tests/cross/compare_digests.sh FRAMES BUILD... -- SOURCE[=MODEL]...
 # Tracks the first FRAMES frames of every source in every build (foreign ones run under qemu-user) with every
 # kernel of its architecture, and compares the digests of the results, bit for bit. A source is a recording's
-# folder with its model file, or simulated:..., whose model each build makes for itself.
+# folder with its model file, or simulated:..., whose model each build makes for itself. Behind capture: stands one
+# that a model is captured from.
 set -euo pipefail
 export LC_ALL=C
 
@@ -23,11 +24,12 @@ for source in "$@"; do
   case $source in *=*.model) model=${source##*=} source=${source%=*} ;; esac
   first=
   for build in "${builds[@]}"; do
-    program=$build/tests/cross/replay_frames
+    program=$build/tests/cross/replay_frames words=("$model" "$source")
+    [ "$source" = "${source#capture:}" ] || program=$build/tests/cross/capture_frames words=("${source#capture:}")
     [ -x "$program" ] || die "$program is not built"
     launch "$program" "$build"
     for kernel in "${kernels[@]}"; do
-      line=$("${runner[@]}" "$program" "$model" "$source" --kernels "$kernel" --frames "$frames") || die "$program failed on $source"
+      line=$("${runner[@]}" "$program" "${words[@]}" --kernels "$kernel" --frames "$frames") || die "$program failed on $source"
       [ -n "$first" ] || first=$line
       verdict=same
       [ "$line" = "$first" ] || { verdict=DIFFERENT; failed=1; }

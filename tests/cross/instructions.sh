@@ -2,7 +2,8 @@
 # tests/cross/instructions.sh BUILD FRAMES SOURCE[=MODEL]...
 # Counts the instructions of the 64-bit ARM build in folder BUILD under qemu-user and prints a row a source, in
 # millions: the median tracked frame and its stages, the costliest tracked and the costliest searching frame, and
-# the whole of the first detection. Counts repeat exactly. The sources are those of compare_digests.sh.
+# the whole of the first detection. Counts repeat exactly. The sources are those of compare_digests.sh; of
+# a capture the first picture stands under detection.
 # With LIMITS=FILE it fails when a figure is more than 10 % above the one there ("name median detection"), or when
 # a source is missing there.
 set -euo pipefail
@@ -13,8 +14,9 @@ die() { printf 'instructions: %s\n' "$*" >&2; exit 2; }
 build=$1 frames=$2
 shift 2
 here=$(dirname "${BASH_SOURCE[0]}")
-program=$build/tests/cross/replay_frames
-[ -x "$program" ] || die "$program is not built"
+for program in replay_frames capture_frames; do
+  [ -x "$build/tests/cross/$program" ] || die "$build/tests/cross/$program is not built"
+done
 sysroot=$(sed -n 's/^PLIANT_SYSROOT:[A-Z]*=//p' "$build/CMakeCache.txt")
 command -v qemu-aarch64 >/dev/null || die "no qemu-aarch64; install it: sudo apt install qemu-user"
 scratch=$(mktemp -d)
@@ -46,8 +48,10 @@ for source in "$@"; do
   model=-
   case $source in *=*.model) model=${source##*=} source=${source%=*} ;; esac
   name=${source##*/}
-  env -i PATH="$PATH" qemu-aarch64 -plugin "$scratch/libcount.so,out=$scratch/counts" -L "$sysroot" "$program" "$model" \
-    "$source" --frames "$frames" >"$scratch/line" || die "$program failed on $source"
+  program=$build/tests/cross/replay_frames words=("$model" "$source")
+  [ "$source" = "${source#capture:}" ] || program=$build/tests/cross/capture_frames words=("${source#capture:}")
+  env -i PATH="$PATH" qemu-aarch64 -plugin "$scratch/libcount.so,out=$scratch/counts" -L "$sysroot" "$program" \
+    "${words[@]}" --frames "$frames" >"$scratch/line" || die "$program failed on $source"
   read -r median most search detection tracked stages <<<"$(figures "$scratch/counts")"
   read -r surface predict associate align label regroup deform <<<"$stages"
   printf '%-24s %7d %8s %8s %8s %9s | %7s %7s %9s %6s %6s %7s %6s\n' "$name" "$tracked" "$median" "$most" "$search" \

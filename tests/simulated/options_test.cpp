@@ -42,6 +42,7 @@ TEST(SimulatedOptions, EveryKeyIsRead) {
   EXPECT_EQ(parse_options("box")->motion, Motion::handled);
   EXPECT_EQ(parse_options("box?motion=turned")->motion, Motion::turned);
   EXPECT_EQ(parse_options("box?motion=circled")->motion, Motion::circled);
+  EXPECT_EQ(parse_options("box?motion=carried")->motion, Motion::carried);
 }
 
 TEST(SimulatedOptions, WhatIsUnknownIsNamedWithItsNeighbour) {

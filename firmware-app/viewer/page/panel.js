@@ -142,10 +142,22 @@ export class Panel {
         rows.push(row("heap calls / page faults", `${status.heap_calls} / ${status.page_faults}`));
       if (link?.incomplete) rows.push(row("incomplete on the way", String(link.incomplete)));
       if (status.last_error) rows.push(row("last error", status.last_error, true));
-      byId("numbers").replaceChildren(...rows);
+      byId("numbers").replaceChildren(...(status.source.startsWith("capture of ") ? this.captureRows(status) : rows));
     }
     byId("advice").textContent = link?.advice ?? "";
     for (const plot of Object.values(this.plots)) plot.draw(now);
+  }
+
+  /** While a model is captured: what the person who shows the object is told, a line for each sentence. */
+  captureRows(status) {
+    const told = status.last_error.split(/; | \| /).map((sentence) => {
+      const line = row(sentence, "");
+      line.lastChild.remove();
+      line.firstChild.colSpan = 2;
+      Object.assign(line.firstChild.style, { whiteSpace: "normal", textAlign: "left" });
+      return line;
+    });
+    return [row("fused / lost", `${status.tracked} / ${status.lost}`), ...told];
   }
 
   shown(now) {
