@@ -22,7 +22,7 @@ double match_tolerance(const RegistrationState& s) noexcept {
 }
 
 double working_reach(const RegistrationState& s) noexcept {
-  return 1.5 * std::max(s.support / 9, s.spacing);
+  return 1.5 * std::max(s.support / 7, s.spacing);
 }
 
 CloudTarget working_target(const RegistrationState& s) noexcept {

@@ -10,7 +10,8 @@ namespace pliant {
 namespace {
 
 constexpr double kThinning = 0.4;  // of the model's spacing: random samples of a surface come that close
-constexpr double kWorkingLeaf = 1.0 / 9;  // of the support: about 150 points in it
+constexpr double kWorkingLeaf =
+    1.0 / 7;  // of the support: some 150 points of a plane stand in it, more of what is bent
 constexpr double kLeastLean = 0.01;
 
 /// Mean distance of a point to its nearest other, from up to 512 points.
