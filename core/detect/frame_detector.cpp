@@ -81,6 +81,7 @@ void FrameDetector::begin(const Surface& surface) noexcept {
   finalists_.clear();
   votes_.clear();
   keypoints_used_ = 0;
+  cost_ = 0;
   best_ = Detection();
   state_ = DetectState::working;
   ++searches_;
@@ -95,7 +96,9 @@ void FrameDetector::begin(const Surface& surface, const RigidTransform& pose, do
 
 DetectState FrameDetector::step(std::int64_t budget) noexcept {
   while (state_ == DetectState::working) {
-    budget -= slice();
+    const std::int64_t took = slice();
+    budget -= took;
+    cost_ += took;
     if (budget <= 0) break;
   }
   return state_;

@@ -29,7 +29,8 @@ struct DetectSettings {
   std::uint32_t keypoints = 1024;        ///< scene keypoints described in a round [64, 4096]
   std::uint32_t rounds = 3;              ///< rounds of further keypoints until the object is found [1, 8]
   std::uint32_t model_keypoints = 1024;  ///< of the model's, taken from the front [64, 2048]
-  bool exhaustive = false;    ///< on: all rounds, even when the object is found: for several instances
+  bool thorough = false;      ///< on: after the first round every proposal is brought nearer before it is
+                              ///< judged, which thin limbs need: for single pictures, twice the time
   std::uint32_t matches = 4;  ///< model keypoints tried for each scene keypoint [1, 8]
 };
 
@@ -43,6 +44,19 @@ enum class DetectState : std::uint8_t {
 class FrameDetector {
  public:
   static constexpr std::size_t kEvidencePoints = 600;
+  /// Steps of a round, in order.
+  enum class Phase : std::uint8_t {
+    normals,
+    sample,
+    describe,
+    match,
+    propose,
+    vote,
+    look,
+    shortlist,
+    settle,
+    challenge
+  };
 
   /// Takes the memory for this model and camera (about 4 MB).
   void lay_out(Workspace& workspace, const ModelView& model, const Intrinsics& camera,
@@ -61,28 +75,16 @@ class FrameDetector {
   /// units).
   DetectState step(std::int64_t budget) noexcept;
   [[nodiscard]] DetectState state() const noexcept { return state_; }
-  /// A pose that was looked at closely.
-  using Candidate = PoseCandidate;
-  /// The distinct poses of the search so far, in no order: for several instances in one picture.
-  [[nodiscard]] std::span<const Candidate> candidates() const noexcept { return finalists_.all(); }
+  /// What the next slice works on; kept when the search ends.
+  [[nodiscard]] Phase phase() const noexcept { return phase_; }
   /// Scene keypoints described so far.
   [[nodiscard]] std::size_t keypoints_used() const noexcept { return keypoints_used_; }
+  /// What the search took so far, in units of about 1000 instructions.
+  [[nodiscard]] std::int64_t cost() const noexcept { return cost_; }
   /// The best pose so far; to be believed only in state found.
   [[nodiscard]] const Detection& best() const noexcept { return best_; }
 
  private:
-  enum class Phase : std::uint8_t {
-    normals,
-    sample,
-    describe,
-    match,
-    propose,
-    vote,
-    look,
-    shortlist,
-    settle,
-    challenge
-  };
   struct Proposal {
     std::uint16_t scene = 0;  // keypoint
     std::uint16_t model = 0;
@@ -147,6 +149,7 @@ class FrameDetector {
   std::size_t point_count_ = 0;
   std::size_t order_count_ = 0, order_next_ = 0;
   std::size_t keypoints_used_ = 0;
+  std::int64_t cost_ = 0;
   std::size_t key_count_ = 0;  // of this round
   std::size_t proposal_count_ = 0;
   std::size_t shortlist_count_ = 0;

@@ -62,19 +62,23 @@ RigidTransform FrameDetector::pose_of(const Proposal& proposal) const noexcept {
 std::int64_t FrameDetector::slice_propose() noexcept {
   constexpr std::size_t kBatch = 128;
   const std::size_t last = std::min(cursor_ + kBatch, proposal_count_);
+  // A thin limb meets nothing from where a local frame puts it: it looks as bad as any wrong pose at first.
+  const bool nearer = settings_.thorough && round_ > 0;
   for (; cursor_ < last; ++cursor_) {
     Proposal& p = proposals_[cursor_];
-    const RigidTransform pose = pose_of(p);
-    p.score = static_cast<float>(
-        pose_evidence(model_, snapshot_, pose, kQuickPoints, coarse_, widest_, kPlainWeight).score());
+    RigidTransform pose = pose_of(p);
     votes_.add(pose, round_ * settings_.keypoints + p.scene);
+    if (nearer) refine_pose(model_, snapshot_, kLookPoints, coarse_, fine_, 3, pose);
+    p.score = static_cast<float>(pose_evidence(model_, snapshot_, pose, nearer ? kLookPoints : kQuickPoints,
+                                               nearer ? fine_ : coarse_, widest_, kPlainWeight)
+                                     .score());
   }
   if (cursor_ >= proposal_count_) {
     votes_.index();
     phase_ = Phase::vote;
     cursor_ = 0;
   }
-  return static_cast<std::int64_t>(kBatch) * 8;
+  return static_cast<std::int64_t>(kBatch) * (nearer ? 60 : 8);
 }
 
 std::int64_t FrameDetector::slice_vote() noexcept {
@@ -224,9 +228,9 @@ void FrameDetector::decide() noexcept {
   const bool all_described = order_next_ >= order_count_;
   const bool last = round_ + 1 >= settings_.rounds || all_described;
   // The last resort is for who has looked at everything, or nearly.
-  const bool believed =
-      verdict.convincing || ((all_described || round_ >= 2) && verdict.last_resort && supported(best_.pose));
-  if (believed && (last || !settings_.exhaustive)) {
+  const bool believed = verdict.convincing || ((all_described || round_ >= 2) && verdict.last_resort &&
+                                               (verdict.clear || supported(best_.pose)));
+  if (believed) {
     state_ = DetectState::found;
   } else if (last) {
     state_ = DetectState::nothing;

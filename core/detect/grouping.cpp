@@ -101,20 +101,26 @@ bool rigid_fit(std::span<const PosedMatch> matches, std::span<const std::uint32_
 
 void Grouping::lay_out(Workspace& workspace, std::size_t matches) noexcept {
   order_ = workspace.take<std::uint32_t>(matches);
-  members_ = workspace.take<std::uint32_t>(matches);
+  members_ = workspace.take<std::uint32_t>(matches + 1);
   seeds_ = workspace.take<Seed>(1024);
   bits_ = workspace.take<std::uint64_t>(kMostMembers * kMostMembers / 64);
+  for (std::span<float>* array : {&lanes_.mx, &lanes_.my, &lanes_.mz, &lanes_.sx, &lanes_.sy, &lanes_.sz})
+    *array = workspace.take<float>(matches);
+  hits_ = workspace.take<std::int32_t>(matches);
 }
 
-std::size_t Grouping::gather(std::span<const PosedMatch> matches, const RigidTransform& pose,
-                             const Point3f& around, double tolerance, double growth) noexcept {
+std::size_t Grouping::gather(std::size_t matches, const RigidTransform& pose, const Point3f& around,
+                             double tolerance, double growth) noexcept {
+  lanes_.explained_by(FastTransform(pose), around, static_cast<float>(tolerance), static_cast<float>(growth),
+                      hits_.first(matches));
+  return collect_hits(matches);
+}
+
+std::size_t Grouping::collect_hits(std::size_t matches) noexcept {
   std::size_t count = 0;
-  const Vector3 centre = to_vector(around);
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Vector3 m = to_vector(matches[i].model);
-    const Vector3 gap = pose * m - to_vector(matches[i].scene);
-    const double limit = tolerance + growth * std::sqrt(squared(m - centre));
-    if (squared(gap) <= limit * limit) members_[count++] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < matches; ++i) {
+    members_[count] = static_cast<std::uint32_t>(i);
+    count += static_cast<std::size_t>(hits_[i]);
   }
   return count;
 }
@@ -131,20 +137,20 @@ std::size_t Grouping::drop_inconsistent(std::span<const PosedMatch> matches, std
     count = kMostMembers;
   }
   constexpr std::size_t kWords = kMostMembers / 64;
+  float room[6][kMostMembers] = {};
+  const MatchLanes members = {room[0], room[1], room[2], room[3], room[4], room[5]};
   for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t w = 0; w < kWords; ++w) bits_[i * kWords + w] = 0;
-  const auto length = [](const Point3f& a, const Point3f& b) {
-    const float x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-    return std::sqrt(x * x + y * y + z * z);
-  };
-  const auto limit = static_cast<float>(tolerance);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const PosedMatch &a = matches[members_[i]], &b = matches[members_[j]];
-      if (std::fabs(length(a.model, b.model) - length(a.scene, b.scene)) > limit) continue;
-      bits_[i * kWords + j / 64] |= std::uint64_t{1} << (j % 64);
-      bits_[j * kWords + i / 64] |= std::uint64_t{1} << (i % 64);
+    members.put(i, matches[members_[i]].model, matches[members_[i]].scene);
+  std::int32_t hits[kMostMembers] = {};
+  for (std::size_t i = 0; i < count; ++i) {
+    members.consistent_with(i, static_cast<float>(tolerance), std::span(hits).first(count));
+    hits[i] = 0;
+    for (std::size_t w = 0; w < kWords; ++w) {
+      std::uint64_t word = 0;
+      for (std::size_t b = 0; b < 64; ++b) word |= static_cast<std::uint64_t>(hits[64 * w + b]) << b;
+      bits_[i * kWords + w] = word;
     }
+  }
   // Those consistent with fewer than half of the group go; twice, as the group is then smaller.
   std::uint64_t alive[kWords] = {};
   for (std::size_t i = 0; i < count; ++i) alive[i / 64] |= std::uint64_t{1} << (i % 64);
@@ -178,23 +184,15 @@ std::size_t Grouping::group(std::span<const PosedMatch> all, const GroupingSetti
       order_.begin() + static_cast<std::ptrdiff_t>(matches.size()), [&](std::uint32_t a, std::uint32_t b) {
         return matches[a].quality != matches[b].quality ? matches[a].quality > matches[b].quality : a < b;
       });
+  for (std::size_t i = 0; i < matches.size(); ++i) lanes_.put(i, matches[i].model, matches[i].scene);
+  const auto tolerance = static_cast<float>(settings.tolerance);
+  const auto growth = static_cast<float>(settings.frame_tolerance);
   for (std::size_t k = 0; k < seeds; ++k) {
-    const PosedMatch& seed = matches[order_[k]];
-    const RigidTransform pose = pose_from_frames(seed);
-    const Vector3 m0 = to_vector(seed.model), s0 = to_vector(seed.scene);
-    std::uint32_t count = 0;
-    for (const PosedMatch& match : matches) {
-      const Vector3 m = to_vector(match.model), s = to_vector(match.scene);
-      const double in_model = std::sqrt(squared(m - m0));
-      const double in_scene = std::sqrt(squared(s - s0));
-      if (std::fabs(in_model - in_scene) > settings.tolerance) continue;
-      if (settings.use_frames) {
-        const double limit = settings.tolerance + settings.frame_tolerance * in_model;
-        if (squared(pose * m - s) > limit * limit) continue;
-      }
-      ++count;
-    }
-    seeds_[k] = {order_[k], count};
+    const std::uint32_t seed = order_[k];
+    seeds_[k] = {seed, settings.use_frames
+                           ? lanes_.count_agreeing(seed, FastTransform(pose_from_frames(matches[seed])),
+                                                   tolerance, growth, matches.size())
+                           : lanes_.consistent_with(seed, tolerance, hits_.first(matches.size()))};
   }
   std::sort(seeds_.begin(), seeds_.begin() + static_cast<std::ptrdiff_t>(seeds),
             [](const Seed& a, const Seed& b) {
@@ -217,20 +215,16 @@ std::size_t Grouping::group(std::span<const PosedMatch> all, const GroupingSetti
     }
     if (explained) continue;
     if (settings.use_frames) {
-      count = gather(matches, pose, seed.model, settings.tolerance, settings.frame_tolerance);
+      count = gather(matches.size(), pose, seed.model, settings.tolerance, settings.frame_tolerance);
     } else {
-      for (std::size_t i = 0; i < matches.size(); ++i) {
-        const double in_model = std::sqrt(squared(to_vector(matches[i].model) - to_vector(seed.model)));
-        const double in_scene = std::sqrt(squared(to_vector(matches[i].scene) - to_vector(seed.scene)));
-        if (std::fabs(in_model - in_scene) <= settings.tolerance)
-          members_[count++] = static_cast<std::uint32_t>(i);
-      }
+      lanes_.consistent_with(seeds_[k].index, tolerance, hits_.first(matches.size()));
+      count = collect_hits(matches.size());
     }
     count = drop_inconsistent(matches, count, settings.tolerance);
     if (!rigid_fit(matches, members_.first(count), pose)) continue;
     // The fitted pose gathers anew, now without the seed's own error.
     for (int pass = 0; pass < 3; ++pass) {
-      count = gather(matches, pose, seed.model, settings.tolerance, 0);
+      count = gather(matches.size(), pose, seed.model, settings.tolerance, 0);
       if (!rigid_fit(matches, members_.first(count), pose)) break;
     }
     if (count < settings.least) continue;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/detect/match_lanes.hpp"
 #include "core/geometry/rigid_transform.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/model/model_view.hpp"
@@ -54,8 +55,10 @@ class Grouping {
   struct Seed {
     std::uint32_t index, count;
   };
-  [[nodiscard]] std::size_t gather(std::span<const PosedMatch> matches, const RigidTransform& pose,
-                                   const Point3f& around, double tolerance, double growth) noexcept;
+  /// Numbers of the matches that `pose` explains to members_; returns how many.
+  [[nodiscard]] std::size_t gather(std::size_t matches, const RigidTransform& pose, const Point3f& around,
+                                   double tolerance, double growth) noexcept;
+  [[nodiscard]] std::size_t collect_hits(std::size_t matches) noexcept;
   [[nodiscard]] std::size_t drop_inconsistent(std::span<const PosedMatch> matches, std::size_t count,
                                               double tolerance) noexcept;
 
@@ -63,6 +66,8 @@ class Grouping {
   std::span<Seed> seeds_;
   std::span<std::uint32_t> members_;
   std::span<std::uint64_t> bits_;
+  MatchLanes lanes_;
+  std::span<std::int32_t> hits_;
 };
 
 /// The rigid transform scene <- model with the least squared distances over `matches[members[...]]` (Horn

@@ -62,8 +62,18 @@ class PointGrid {
     std::uint32_t index;
   };
   [[nodiscard]] std::int32_t cell_of(float x) const noexcept {
-    const double c = std::floor(static_cast<double>(x) * inverse_cell_);
-    return c < -1e9 ? -1000000000 : c > 1e9 ? 1000000000 : static_cast<std::int32_t>(c);
+    const double c = static_cast<double>(x) * inverse_cell_;
+    if (!(c > -1e9)) return -1000000000;  // also for what is not a number
+    if (c > 1e9) return 1000000000;
+    const auto towards_zero = static_cast<std::int32_t>(c);
+    return towards_zero - (c < towards_zero ? 1 : 0);
+  }
+  /// How far `x` (metres) is from cells of number `cell`, less a little, so that rounding leaves no point
+  /// out.
+  [[nodiscard]] double gap_to(std::int32_t cell, float x) const noexcept {
+    const double at = static_cast<double>(x) * inverse_cell_ - cell;
+    const double gap = at < 0 ? -at : at > 1 ? at - 1 : 0;
+    return gap > 1e-5 ? (gap - 1e-5) * cell_ : 0;
   }
   static std::uint32_t row_of(std::int32_t y, std::int32_t z) noexcept {
     return static_cast<std::uint32_t>(y) * 2654435761U + static_cast<std::uint32_t>(z) * 2246822519U;
@@ -148,9 +158,15 @@ std::uint32_t PointGrid::nearest_if(const Point3f& p, float radius, float& squar
   const std::int32_t x0 = cell_of(p.x - reach), x1 = cell_of(p.x + reach);
   const std::int32_t y0 = cell_of(p.y - reach), y1 = cell_of(p.y + reach);
   const std::int32_t z0 = cell_of(p.z - reach), z1 = cell_of(p.z + reach);
-  for (std::int32_t z = z0; z <= z1; ++z)
-    for (std::int32_t y = y0; y <= y1; ++y)
-      if (y != yc || z != zc) scan_row(x0, x1, y, z, look);
+  for (std::int32_t z = z0; z <= z1; ++z) {
+    const double across_z = gap_to(z, p.z);
+    for (std::int32_t y = y0; y <= y1; ++y) {
+      if (y == yc && z == zc) continue;
+      const double across_y = gap_to(y, p.y);
+      if (across_y * across_y + across_z * across_z <= static_cast<double>(best))
+        scan_row(x0, x1, y, z, look);
+    }
+  }
   squared_distance = best;
   return found;
 }

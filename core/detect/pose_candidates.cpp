@@ -23,6 +23,10 @@ constexpr double kBeyondDoubt = 0.5;
 // or the other.
 constexpr double kLittleUnexplained = 0.22;
 constexpr double kLittleTwin = 0.35;
+// The object itself, half hidden, scores as low; noise explains its fit then, and no other attitude and no
+// other place fits at all. Clutter that scores as much leaves a tenth unexplained, or fits in several ways.
+constexpr double kClearDoubt = 0.06;
+constexpr double kClear = 0.2;
 constexpr double kMostOutside =
     0.4;  // of the facing points; with more out of the picture, only certainty counts
 
@@ -99,9 +103,10 @@ Verdict verdict_on(const Detection& detection) noexcept {
   Verdict verdict;
   verdict.certain = detection.score >= kCertain;
   verdict.convincing = itself && (verdict.certain || (detection.score >= kConvincing && lone && in_sight));
-  verdict.last_resort = detection.evidence.unexplained() <= kLittleUnexplained &&
-                        detection.twin <= kLittleTwin * detection.score && lone && in_sight &&
-                        detection.score >= kLastResort;
+  verdict.clear = doubt <= kClearDoubt && lone && in_sight && detection.score >= kClear;
+  verdict.last_resort = verdict.clear || (detection.evidence.unexplained() <= kLittleUnexplained &&
+                                          detection.twin <= kLittleTwin * detection.score && lone &&
+                                          in_sight && detection.score >= kLastResort);
   return verdict;
 }
 

@@ -22,7 +22,7 @@ double match_tolerance(const RegistrationState& s) noexcept {
 }
 
 double working_reach(const RegistrationState& s) noexcept {
-  return 1.5 * std::max(s.support / 9, s.spacing);
+  return 1.5 * std::max(s.support / 7, s.spacing);
 }
 
 CloudTarget working_target(const RegistrationState& s) noexcept {
@@ -39,6 +39,7 @@ void refine(const RegistrationState& s, std::span<const std::uint16_t> which, do
   if (!s.settings.refinement) return;
   const double last = std::max(1.5 * s.spacing, 4 * noise);
   const AlignSettings fine = {std::max(match_tolerance(s), last), last, 1.5 * s.spacing, 10};
+  s.work += which.size() * static_cast<std::size_t>(fine.iterations) * work::kNearest;
   RigidTransform refined = pose;
   if (align_to_cloud(s.model, which, base_target(s), fine, refined) > 0) pose = refined;
 }
@@ -47,6 +48,7 @@ void measure(RegistrationState& s, const RigidTransform& pose, double noise, boo
   const std::span<const std::uint8_t> taken =
       only_free ? std::span<const std::uint8_t>(s.base_taken.first(s.base_count))
                 : std::span<const std::uint8_t>();
+  s.work += s.base_count * work::kNearest;
   s.readings.measure(s.model, s.model_index, s.base.first(s.base_count), taken, pose, 1.5 * s.spacing,
                      std::max(2.5 * s.spacing, 4 * noise));
 }

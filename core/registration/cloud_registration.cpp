@@ -96,6 +96,7 @@ const RegistrationResult& CloudRegistration::finish(std::size_t found) noexcept 
   s.result.model_keypoints = static_cast<std::uint32_t>(s.model_key_count);
   s.result.scene_keypoints = static_cast<std::uint32_t>(s.key_count);
   s.result.instances = {s.instances.data(), found};
+  s.result.work = s.work;
   if (found > 0) s.result.outcome = RegistrationOutcome::found;
   return s.result;
 }
@@ -105,6 +106,7 @@ const RegistrationResult& CloudRegistration::register_cloud(std::span<const Poin
   // Model initialisation (3.1): stored in the model unless more keypoints are asked for.
   describe_model(s);
   done(RegistrationStage::descriptors, true);
+  s.work = 0;
   // Scene: normals, uniform downsampling, descriptors, matches.
   DepthFrame frame;
   Intrinsics camera;
@@ -153,7 +155,8 @@ std::size_t CloudRegistration::search_one_view(const DepthFrame& frame, const In
   sensor.near_limit = 0.05;
   sensor.far_limit = limits::kMaxDepth;
   std::array<SeenInstance, kMostInstances> seen;
-  const std::size_t count = search_picture(s, frame, camera, sensor, {seen.data(), s.settings.max_instances});
+  const std::size_t count =
+      search_picture(s, frame, camera, sensor, observer_, {seen.data(), s.settings.max_instances});
   done(RegistrationStage::grouping);
   for (std::size_t k = 0; k < count; ++k) complete(k, scene_from_camera * seen[k].pose, seen[k].score);
   return count;
@@ -194,8 +197,10 @@ const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& fr
   }
   describe_model(s);
   done(RegistrationStage::descriptors, true);
+  s.work = 0;
   std::array<SeenInstance, kMostInstances> seen;
-  const std::size_t count = search_picture(s, frame, camera, sensor, {seen.data(), s.settings.max_instances});
+  const std::size_t count =
+      search_picture(s, frame, camera, sensor, observer_, {seen.data(), s.settings.max_instances});
   done(RegistrationStage::grouping);
   read_points(frame, camera, sensor, {seen.data(), count});
   s.one_view = true;

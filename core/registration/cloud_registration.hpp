@@ -106,6 +106,7 @@ struct RegistrationResult {
   double size_ratio = 1;              ///< scene's extent over the model's
   std::uint32_t model_keypoints = 0;  ///< as used
   std::uint32_t scene_keypoints = 0;
+  std::uint64_t work = 0;                     ///< about how many instructions it took; the same everywhere
   std::span<const InstanceResult> instances;  ///< best first
 };
 

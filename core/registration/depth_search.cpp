@@ -9,8 +9,8 @@ namespace pliant {
 
 namespace {
 
-// Further instances must be surer than a lone one: they have no place to themselves.
-constexpr double kFurtherInstance = 0.35;
+// What an instance explains: readings this near to its surface, of the model's radius, and 3 σ.
+constexpr double kExplained = 0.06;
 constexpr double kDrawnUnitsPerMetre = 8000;  // of drawn pictures: 1/8 mm
 
 Intrinsics usual_camera(std::size_t pixels) noexcept {
@@ -27,10 +27,59 @@ void lay_out(Workspace& workspace, const RegistrationState& s, const Intrinsics&
   DetectSettings settings;
   // There is no next frame to try.
   settings.rounds = 5;
+  settings.thorough = true;
   settings.model_keypoints = 2048;
-  settings.exhaustive = s.settings.max_instances > 1;
   surface.lay_out(workspace, camera);
   detector.lay_out(workspace, s.model, camera, settings);
+}
+
+/// The paper's stage that a step of the detector belongs to.
+RegistrationStage stage_of(FrameDetector::Phase phase) noexcept {
+  switch (phase) {
+    case FrameDetector::Phase::normals:
+      return RegistrationStage::normals;
+    case FrameDetector::Phase::sample:
+      return RegistrationStage::keypoints;
+    case FrameDetector::Phase::describe:
+      return RegistrationStage::descriptors;
+    case FrameDetector::Phase::match:
+      return RegistrationStage::matching;
+    default:
+      return RegistrationStage::grouping;
+  }
+}
+
+/// The picture without the readings that the model at `pose` explains; kept in s.picture.
+DepthFrame without_instance(RegistrationState& s, const DepthFrame& frame, const Intrinsics& camera,
+                            const SensorDescription& sensor, const RigidTransform& pose) noexcept {
+  DepthFrame rest = frame;
+  rest.depth = s.picture.data();
+  rest.stride = frame.width;
+  if (frame.depth != rest.depth)
+    for (int v = 0; v < frame.height; ++v)
+      for (int u = 0; u < frame.width; ++u)
+        s.picture[static_cast<std::size_t>(v * rest.stride + u)] = frame.depth[v * frame.stride + u];
+  for (std::size_t i = 0; i < s.model.size(); ++i) {
+    const Point3f& m = s.model.positions()[i];
+    const Normal16& n = s.model.normals()[i];
+    const Vector3 p =
+        pose * Vector3(static_cast<double>(m.x), static_cast<double>(m.y), static_cast<double>(m.z));
+    if (p.z() < sensor.near_limit || p.dot(pose.rotation * Vector3(n.x, n.y, n.z)) > 0) continue;
+    // A point stands for the surface up to the next one.
+    const double half = s.model.spacing() / p.z();
+    const double reach = (kExplained * s.model.radius() + 3 * sensor.sigma(p.z())) * camera.depth_scale;
+    const double u = camera.fx * p.x() / p.z() + camera.cx, v = camera.fy * p.y() / p.z() + camera.cy;
+    const int u0 = std::max(0, static_cast<int>(u - half * camera.fx)),
+              u1 = std::min(frame.width - 1, static_cast<int>(u + half * camera.fx + 1)),
+              v0 = std::max(0, static_cast<int>(v - half * camera.fy)),
+              v1 = std::min(frame.height - 1, static_cast<int>(v + half * camera.fy + 1));
+    for (int y = v0; y <= v1; ++y)
+      for (int x = u0; x <= u1; ++x) {
+        std::uint16_t& d = s.picture[static_cast<std::size_t>(y * rest.stride + x)];
+        if (std::fabs(d - p.z() * camera.depth_scale) < reach) d = 0;
+      }
+  }
+  return rest;
 }
 
 }  // namespace
@@ -47,7 +96,8 @@ std::size_t depth_search_bytes(const ModelView& model, std::size_t pixels) noexc
 }
 
 std::size_t search_picture(RegistrationState& s, const DepthFrame& frame, const Intrinsics& camera,
-                           const SensorDescription& sensor, std::span<SeenInstance> seen) noexcept {
+                           const SensorDescription& sensor, const RegistrationObserver& observer,
+                           std::span<SeenInstance> seen) noexcept {
   Workspace workspace(s.depth_block);
   Surface surface;
   FrameDetector detector;
@@ -55,28 +105,27 @@ std::size_t search_picture(RegistrationState& s, const DepthFrame& frame, const 
   if (workspace.exhausted()) return 0;
   surface.start(camera, sensor, s.settings.kernels);
   detector.start(s.model, camera, sensor, s.settings.kernels);
-  surface.build(frame, {0, 0, camera.width, camera.height});
-  detector.begin(surface);
-  while (detector.state() == DetectState::working) detector.step(1000000);
-  s.key_count = detector.keypoints_used();
-  if (detector.state() != DetectState::found || seen.empty()) return 0;
-  const Detection& best = detector.best();
-  seen[0] = {best.pose, best.score};
-  std::size_t count = 1;
-  // The others by falling score, each with a place of its own.
+  const auto tell = [&observer](FrameDetector::Phase phase) {
+    if (observer.stage_done != nullptr) observer.stage_done(observer.context, stage_of(phase), false);
+  };
+  // One after the other, each in what the earlier ones leave of the picture.
+  DepthFrame rest = frame;
+  s.key_count = 0;
+  std::size_t count = 0;
   while (count < seen.size()) {
-    const FrameDetector::Candidate* next = nullptr;
-    for (const FrameDetector::Candidate& c : detector.candidates()) {
-      if (c.score < kFurtherInstance || (next != nullptr && c.score <= next->score)) continue;
-      bool apart = true;
-      for (std::size_t k = 0; k < count; ++k) {
-        const Vector3 gap = c.pose * s.model.centre() - seen[k].pose * s.model.centre();
-        apart = apart && gap.dot(gap) > 0.25 * s.model.radius() * s.model.radius();
-      }
-      if (apart) next = &c;
+    surface.build(rest, {0, 0, camera.width, camera.height});
+    detector.begin(surface);
+    while (detector.state() == DetectState::working) {
+      const FrameDetector::Phase phase = detector.phase();
+      detector.step(1);
+      if (detector.phase() != phase) tell(phase);
     }
-    if (next == nullptr) break;
-    seen[count++] = {next->pose, next->score};
+    tell(detector.phase());
+    s.work += 1000 * static_cast<std::uint64_t>(detector.cost());
+    s.key_count = std::max(s.key_count, detector.keypoints_used());
+    if (detector.state() != DetectState::found) break;
+    seen[count++] = {detector.best().pose, detector.best().score};
+    if (count < seen.size()) rest = without_instance(s, rest, camera, sensor, detector.best().pose);
   }
   return count;
 }

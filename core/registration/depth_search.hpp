@@ -21,9 +21,10 @@ struct SeenInstance {
 [[nodiscard]] std::size_t depth_search_bytes(const ModelView& model, std::size_t pixels) noexcept;
 
 /// Searches a picture; writes the instances, best first, and returns how many. None when the picture does not
-/// fit the state's memory.
+/// fit the state's memory. `observer` is told of the stages up to grouping.
 [[nodiscard]] std::size_t search_picture(RegistrationState& s, const DepthFrame& frame,
                                          const Intrinsics& camera, const SensorDescription& sensor,
+                                         const RegistrationObserver& observer,
                                          std::span<SeenInstance> seen) noexcept;
 
 /// Draws a cloud as RegistrationState::eye sees it: pose and intrinsics of a camera that has all of it in

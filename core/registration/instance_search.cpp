@@ -21,6 +21,7 @@ constexpr std::size_t kSingleFrames = 256;  // matches whose own poses are tried
 
 double score_of(const RegistrationState& s, const RigidTransform& pose) noexcept {
   const std::size_t count = std::min(kScorePoints, s.model.size());
+  s.work += count * work::kNearest;
   return cloud_agreement(s.model, s.prefix.first(count), working_target(s), pose, match_tolerance(s),
                          working_reach(s)) /
          static_cast<double>(count);
@@ -37,6 +38,7 @@ void try_pose(const RegistrationState& s, RigidTransform pose, double gate, Tria
     const double tolerance = match_tolerance(s);
     const AlignSettings coarse = {gate, tolerance, working_reach(s), 8};
     const std::size_t count = std::min(kCoarsePoints, s.model.size());
+    s.work += count * static_cast<std::size_t>(coarse.iterations) * work::kNearest;
     static_cast<void>(align_to_cloud(s.model, s.prefix.first(count), working_target(s), coarse, pose));
   }
   const double score = score_of(s, pose);
@@ -52,6 +54,7 @@ void try_single_frames(RegistrationState& s, std::span<const PosedMatch> matches
   for (std::size_t k = 0; k < matches.size(); k += step) {
     Trial trial;
     trial.pose = pose_from_frames(matches[k]);
+    s.work += count * work::kNearest;
     trial.score = cloud_agreement(s.model, s.prefix.first(count), working_target(s), trial.pose, coarse,
                                   std::max(coarse, working_reach(s)));
     for (Trial& held : top)
@@ -94,6 +97,7 @@ double find_instance(RegistrationState& s, RigidTransform& pose) noexcept {
     GroupingSettings settings;
     settings.tolerance = match_tolerance(s);
     settings.use_frames = s.settings.frame_hypotheses;
+    s.work += left.size() * settings.seeds * work::kVote;
     const std::size_t count = s.grouping.group(left, settings, s.model.radius(), groups);
     for (std::size_t k = 0; k < count; ++k) {
       // A group with a fraction of the best one's members and a clear winner before it need not be tried.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/detect/symmetric_eigen.hpp"
 
@@ -43,7 +44,7 @@ void flip(Normal16& n) noexcept {
 
 namespace {
 
-/// The spread of the points within `reach` of `c`, in units of reach squared.
+/// The spread of points around their mean, in units of the reach squared.
 struct Spread {
   SymmetricEigen eigen;
   std::size_t count = 0;
@@ -51,33 +52,67 @@ struct Spread {
   [[nodiscard]] bool tells() const noexcept { return count >= 3 && eigen.values(1) > 1e-4 * eigen.values(2); }
 };
 
-Spread spread_within(const PointGrid& grid, const Point3f& c, float reach) noexcept {
-  float sx = 0, sy = 0, sz = 0, sxx = 0, sxy = 0, sxz = 0, syy = 0, syz = 0, szz = 0;
-  const float unit = 1 / reach;
+/// The points around one, as offsets from it.
+struct Surroundings {
+  static constexpr std::size_t kLanes = 4;
+  static constexpr std::size_t kRoom = kMostNeighbours + kLanes;
+  float x[kRoom], y[kRoom], z[kRoom], square[kRoom];
+  std::uint32_t index[kRoom];
+  std::size_t count = 0;
+
+  void gather(const PointGrid& grid, const Point3f& c, float reach) noexcept {
+    count = grid.gather_within(c, reach, kMostNeighbours, {x, y, z, square, index});
+    for (std::size_t k = count; k < count + kLanes; ++k) x[k] = y[k] = z[k] = 0;
+    for (std::size_t k = count; k < count + kLanes; ++k) square[k] = std::numeric_limits<float>::max();
+  }
+  /// Keeps distances and numbers of the points after number i and before `end`; returns how many.
+  [[nodiscard]] std::size_t keep_after(std::uint32_t i, std::size_t end) noexcept {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t j = index[k];
+      square[kept] = square[k];
+      index[kept] = j;
+      kept += static_cast<std::size_t>(j > i) & static_cast<std::size_t>(j < end);
+    }
+    return kept;
+  }
+  /// Of those within `reach`, at most that of gather(). Lane by lane: the same sums whatever the vectors.
+  [[nodiscard]] Spread spread(float reach) const noexcept;
+};
+
+Spread Surroundings::spread(float reach) const noexcept {
+  float sums[10][kLanes] = {};
+  const float unit = 1 / reach, limit = reach * reach;
+  for (std::size_t k = 0; k < count; k += kLanes)
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const float one = square[k + l] <= limit ? 1.0F : 0.0F, scale = square[k + l] <= limit ? unit : 0.0F;
+      const float px = x[k + l] * scale, py = y[k + l] * scale, pz = z[k + l] * scale;
+      sums[0][l] += px;
+      sums[1][l] += py;
+      sums[2][l] += pz;
+      sums[3][l] += px * px;
+      sums[4][l] += px * py;
+      sums[5][l] += px * pz;
+      sums[6][l] += py * py;
+      sums[7][l] += py * pz;
+      sums[8][l] += pz * pz;
+      sums[9][l] += one;
+    }
+  double sum[10];
+  for (int i = 0; i < 10; ++i)
+    sum[i] = static_cast<double>(sums[i][0]) + static_cast<double>(sums[i][1]) +
+             static_cast<double>(sums[i][2]) + static_cast<double>(sums[i][3]);
   Spread spread;
-  spread.count = grid.visit_within(c, reach, kMostNeighbours, [&](std::uint32_t, const Point3f& p, float) {
-    const float x = (p.x - c.x) * unit, y = (p.y - c.y) * unit, z = (p.z - c.z) * unit;
-    sx += x;
-    sy += y;
-    sz += z;
-    sxx += x * x;
-    sxy += x * y;
-    sxz += x * z;
-    syy += y * y;
-    syz += y * z;
-    szz += z * z;
-  });
+  spread.count = static_cast<std::size_t>(sum[9]);
   if (spread.count < 3) return spread;
-  const double k = 1.0 / static_cast<double>(spread.count);
-  const double mx = static_cast<double>(sx) * k, my = static_cast<double>(sy) * k,
-               mz = static_cast<double>(sz) * k;
+  const double k = 1.0 / sum[9], mx = sum[0] * k, my = sum[1] * k, mz = sum[2] * k;
   Matrix3 m;
-  m(0, 0) = static_cast<double>(sxx) * k - mx * mx;
-  m(0, 1) = m(1, 0) = static_cast<double>(sxy) * k - mx * my;
-  m(0, 2) = m(2, 0) = static_cast<double>(sxz) * k - mx * mz;
-  m(1, 1) = static_cast<double>(syy) * k - my * my;
-  m(1, 2) = m(2, 1) = static_cast<double>(syz) * k - my * mz;
-  m(2, 2) = static_cast<double>(szz) * k - mz * mz;
+  m(0, 0) = sum[3] * k - mx * mx;
+  m(0, 1) = m(1, 0) = sum[4] * k - mx * my;
+  m(0, 2) = m(2, 0) = sum[5] * k - mx * mz;
+  m(1, 1) = sum[6] * k - my * my;
+  m(1, 2) = m(2, 1) = sum[7] * k - my * mz;
+  m(2, 2) = sum[8] * k - mz * mz;
   spread.eigen = symmetric_eigen(m);
   return spread;
 }
@@ -93,17 +128,19 @@ constexpr double kBent = 0.4;
 
 void estimate_normals(const PointGrid& grid, std::span<const Point3f> at, double radius,
                       std::span<Normal16> normals) noexcept {
+  Surroundings around;
   for (std::size_t i = 0; i < at.size(); ++i) {
     normals[i] = Normal16();
     for (int attempt = 0; attempt < 3; ++attempt) {
       const auto reach = static_cast<float>(radius * (1 << attempt));
-      Spread spread = spread_within(grid, at[i], reach);
+      around.gather(grid, at[i], reach);
+      Spread spread = around.spread(reach);
       if (spread.count < kFewNeighbours && attempt < 2) continue;
       if (spread.count < 3) break;
       if (!spread.tells()) continue;  // on a line
       // A limb is thinner than the reach that averages noise away on a broad surface.
       if (attempt == 0 && spread.eigen.values(0) > kPerhapsBent * spread.eigen.values(2)) {
-        const Spread narrow = spread_within(grid, at[i], kNarrow * reach);
+        const Spread narrow = around.spread(kNarrow * reach);
         if (narrow.count >= kFewNeighbours && narrow.tells() &&
             static_cast<double>(kNarrow * kNarrow) * narrow.eigen.values(0) < kBent * spread.eigen.values(0))
           spread = narrow;
@@ -154,6 +191,7 @@ void NormalOrientation::outward(std::span<const Point3f> points, const PointGrid
   constexpr std::int32_t kOne = 1 << 28;
   std::size_t edges = 0;
   std::uint32_t histogram[257] = {};
+  Surroundings around;
   for (std::uint32_t i = 0; i < count; ++i) {
     parent_[i] = i;
     parity_[i] = 0;
@@ -161,23 +199,24 @@ void NormalOrientation::outward(std::span<const Point3f> points, const PointGrid
     std::uint32_t near[kEdges] = {};
     float distance[kEdges] = {};
     std::size_t held = 0;
-    grid.visit_within(points[i], static_cast<float>(reach), 256,
-                      [&](std::uint32_t j, const Point3f&, float square) {
-                        if (j <= i || j >= count) return;
-                        std::size_t k = held;
-                        if (held == kEdges) {
-                          if (square >= distance[kEdges - 1]) return;
-                          k = kEdges - 1;
-                        } else {
-                          ++held;
-                        }
-                        for (; k > 0 && square < distance[k - 1]; --k) {
-                          distance[k] = distance[k - 1];
-                          near[k] = near[k - 1];
-                        }
-                        distance[k] = square;
-                        near[k] = j;
-                      });
+    around.gather(grid, points[i], static_cast<float>(reach));
+    const std::size_t later = around.keep_after(i, count);
+    for (std::size_t n = 0; n < later; ++n) {
+      const float square = around.square[n];
+      std::size_t k = held;
+      if (held == kEdges) {
+        if (square >= distance[kEdges - 1]) continue;
+        k = kEdges - 1;
+      } else {
+        ++held;
+      }
+      for (; k > 0 && square < distance[k - 1]; --k) {
+        distance[k] = distance[k - 1];
+        near[k] = near[k - 1];
+      }
+      distance[k] = square;
+      near[k] = around.index[n];
+    }
     for (std::size_t k = 0; k < held; ++k) {
       const std::int32_t cosine = dot(normals[i], normals[near[k]]);
       const std::int32_t alike = cosine < 0 ? -cosine : cosine;

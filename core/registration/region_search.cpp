@@ -112,6 +112,7 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
   GroupingSettings settings;
   settings.tolerance = match_tolerance(s);
   settings.use_frames = s.settings.frame_hypotheses;
+  s.work += matches * settings.seeds * work::kVote;
   const std::size_t count = s.grouping.group(s.posed_left.first(matches), settings, s.model.radius(), groups);
   // Beside the groups: from the base's own pose, for parts that moved little; all that is open, and its
   // largest connected piece alone, which what is open elsewhere cannot pull away.
@@ -122,9 +123,9 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
     if (part < least) continue;
     const double gate = k < count ? 2 * match_tolerance(s) : (k == count ? 0.1 : 0.2) * s.model.radius();
     const AlignSettings wide = {gate, match_tolerance(s), std::max(gate, 1.5 * s.spacing), 12};
-    if (align_to_cloud(s.model, s.part.first(std::min<std::size_t>(part, 800)), base_target(s), wide,
-                       trial) == 0)
-      continue;
+    const std::span<const std::uint16_t> some = s.part.first(std::min<std::size_t>(part, 800));
+    s.work += some.size() * static_cast<std::size_t>(wide.iterations) * work::kNearest;
+    if (align_to_cloud(s.model, some, base_target(s), wide, trial) == 0) continue;
     refine(s, s.part.first(part), noise, trial);
     const Gain gain = gain_of(s, buffers, poses, trial, noise);
     if (gain.points > best.points) {

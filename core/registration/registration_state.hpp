@@ -28,6 +28,17 @@ struct InstanceBuffers {
   std::span<float> residuals;
 };
 
+/// About how many instructions each thing takes that is done many times, measured on x86-64. Their sum tells
+/// how long a registration takes, the same on every machine.
+namespace work {
+inline constexpr std::uint64_t kNormal = 12000;
+inline constexpr std::uint64_t kDescriptor = 60000;
+inline constexpr std::uint64_t kComparison = 24;  // of two descriptors
+inline constexpr std::uint64_t kVote = 12;        // of a match on a pose
+inline constexpr std::uint64_t kNearest = 250;    // the nearest point to one
+inline constexpr std::uint64_t kReading = 600;    // of the warp
+}  // namespace work
+
 struct RegistrationState {
   RegistrationSettings settings;
   ModelView model;
@@ -95,6 +106,7 @@ struct RegistrationState {
   std::array<InstanceBuffers, CloudRegistration::kMostInstances> buffers;
   std::array<InstanceResult, CloudRegistration::kMostInstances> instances;
   RegistrationResult result;
+  mutable std::uint64_t work = 0;  ///< done so far, RegistrationResult::work
 };
 
 }  // namespace pliant

@@ -10,7 +10,8 @@ namespace pliant {
 namespace {
 
 constexpr double kThinning = 0.4;  // of the model's spacing: random samples of a surface come that close
-constexpr double kWorkingLeaf = 1.0 / 9;  // of the support: about 150 points in it
+constexpr double kWorkingLeaf =
+    1.0 / 7;  // of the support: some 150 points of a plane stand in it, more of what is bent
 constexpr double kLeastLean = 0.01;
 
 /// Mean distance of a point to its nearest other, from up to 512 points.
@@ -84,6 +85,7 @@ void find_normals(RegistrationState& s) noexcept {
   const double leaf = std::max(kWorkingLeaf * s.support, s.spacing);
   s.working_count = std::min(s.sampling.sample(s.base.first(s.base_count), leaf, s.kept), s.working.size());
   for (std::size_t i = 0; i < s.working_count; ++i) s.working[i] = s.base[s.kept[i]];
+  s.work += s.working_count * work::kNormal;
   const std::span<const Point3f> points = s.working.first(s.working_count);
   const std::span<Normal16> normals = s.working_normals.first(s.working_count);
   // Four spacings hold some forty points, enough to average the noise of a whole spacing out.
@@ -140,6 +142,7 @@ void describe_keypoints(RegistrationState& s) noexcept {
                                             s.key_frames[k], &s.key_leans[k]))
         s.key_leans[k] = 0;
   });
+  s.work += s.key_count * work::kDescriptor;
   std::size_t count = 0;
   for (std::size_t k = 0; k < s.key_count; ++k) {
     if (static_cast<double>(s.key_leans[k]) < kLeastLean) continue;
@@ -152,6 +155,7 @@ void describe_keypoints(RegistrationState& s) noexcept {
 
 void match_keypoints(RegistrationState& s) noexcept {
   const std::size_t workers = s.settings.workers;
+  s.work += s.posed_count * s.model_key_count * work::kComparison;
   for (std::size_t worker = 1; worker < workers; ++worker) s.helpers[worker].join(s.matcher);
   s.settings.sharer.share(workers, [&](std::size_t worker) {
     const Share share = share_of(worker, workers, s.posed_count, kBoundQueries);

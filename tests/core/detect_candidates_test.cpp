@@ -104,6 +104,16 @@ TEST(Verdict, LastResortNeedsAClearFieldToo) {
   EXPECT_FALSE(verdict_on(half_outside).last_resort);
 }
 
+TEST(PoseCandidates, WhatNoiseExplainsAndNothingElseFitsIsClearAtALowerScore) {
+  EXPECT_TRUE(verdict_on(detection(0.21, -10, -0.1, 0.96)).clear);
+  EXPECT_TRUE(verdict_on(detection(0.21, -10, -0.1, 0.96)).last_resort);
+  EXPECT_FALSE(verdict_on(detection(0.21, -10, -0.1, 0.9)).clear);   // a tenth that noise does not explain
+  EXPECT_FALSE(verdict_on(detection(0.21, -10, 0.03, 0.98)).clear);  // another attitude fits a little
+  EXPECT_FALSE(verdict_on(detection(0.21, 0.1, -0.1, 0.98)).clear);  // so does another place
+  EXPECT_FALSE(verdict_on(detection(0.17, -10, -0.1, 1)).clear);
+  EXPECT_FALSE(verdict_on(detection(0.21, -10, -0.1, 0.96)).convincing);
+}
+
 TEST(SpreadOrder, VisitsEachOnceAndPrefixesAreSpread) {
   for (const std::size_t count : {1U, 2U, 3U, 10U, 144U, 233U, 1000U, 4099U}) {
     const SpreadOrder order(count);

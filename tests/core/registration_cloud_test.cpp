@@ -244,38 +244,6 @@ TEST(CloudRegistration, EveryStageIsReported) {
   for (const int c : calls) EXPECT_GT(c, 0);
 }
 
-TEST(DepthRegistration, FindsTheObjectAndSaysWhatItCannotSee) {
-  Intrinsics camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 285;
-  camera.cx = 160;
-  camera.cy = 120;
-  const RigidTransform pose = testing::test_pose(1.1, Vector3(0.2, 1, 0.1), Vector3(0.02, 0.01, 0.7));
-  const std::vector<std::uint16_t> picture =
-      testing::depth_picture(camera, testing::moved(testing::bumpy_cloud(60000), pose), 1.2, 1, 0.001);
-  DepthFrame frame;
-  frame.depth = picture.data();
-  frame.width = frame.stride = 320;
-  frame.height = 240;
-  RegistrationFixture fixture(picture.size());
-  const RegistrationResult& result = fixture.registration.register_depth(frame, camera, SensorDescription());
-  ASSERT_EQ(result.outcome, RegistrationOutcome::found);
-  const InstanceResult& instance = result.instances[0];
-  EXPECT_LT(testing::degrees_between(instance.regions[0].transform.rotation, pose.rotation), 2);
-  // About half of it is turned away.
-  EXPECT_GT(instance.unobserved, 0.3 * static_cast<double>(testing::bumpy_model().size()));
-  EXPECT_LT(instance.unobserved, 0.7 * static_cast<double>(testing::bumpy_model().size()));
-  for (std::size_t i = 0; i < instance.labels.size(); ++i)
-    if (instance.labels[i] == 0 && instance.matches[i] >= 0) {
-      ASSERT_LT(instance.matches[i], 320 * 240);
-      EXPECT_NE(picture[static_cast<std::size_t>(instance.matches[i])], 0);
-    }
-  frame.height = 4000;
-  EXPECT_NE(fixture.registration.register_depth(frame, camera, SensorDescription()).outcome,
-            RegistrationOutcome::found);
-}
-
 TEST(NormalOrientation, TurnsAClosedSurfaceOutwardWhateverTheSigns) {
   const TestCloud cloud = testing::bumpy_cloud(3000);
   AlignedBlock block(4 << 20);
