@@ -63,7 +63,11 @@ case $part in
   count) folders="core;cross" targets=(replay_frames) ;;
 esac
 read -r -a options <<<"${CROSS_OPTIONS:-}"
-command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+if command -v ccache >/dev/null; then
+  options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPLIANT_PRECOMPILE=OFF)
+else
+  options+=(-DPLIANT_PRECOMPILE=ON)
+fi
 mkdir -p build
 cmake --preset "$preset" "-DPLIANT_SYSROOT=$sysroot" "-DPLIANT_BUILD_TESTS=$([ $part = build ] && echo OFF || echo ON)" \
   "-DPLIANT_TEST_FOLDERS=$folders" "${options[@]}" >"build/$preset.log" 2>&1 ||
