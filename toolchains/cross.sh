@@ -63,11 +63,8 @@ case $part in
   count) folders="core;cross" targets=(replay_frames) ;;
 esac
 read -r -a options <<<"${CROSS_OPTIONS:-}"
-if command -v ccache >/dev/null; then
-  options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DPLIANT_PRECOMPILE=OFF)
-else
-  options+=(-DPLIANT_PRECOMPILE=ON)
-fi
+command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+options+=("-DPLIANT_PRECOMPILE=${PLIANT_PRECOMPILE:-OFF}")
 mkdir -p build
 cmake --preset "$preset" "-DPLIANT_SYSROOT=$sysroot" "-DPLIANT_BUILD_TESTS=$([ $part = build ] && echo OFF || echo ON)" \
   "-DPLIANT_TEST_FOLDERS=$folders" "${options[@]}" >"build/$preset.log" 2>&1 ||
