@@ -67,6 +67,7 @@ case $part in
 esac
 read -r -a options <<<"${CROSS_OPTIONS:-}"
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+options+=("-DPLIANT_PRECOMPILE=${PLIANT_PRECOMPILE:-OFF}")
 mkdir -p build
 cmake --preset "$preset" "-DPLIANT_SYSROOT=$sysroot" "-DPLIANT_BUILD_TESTS=$([ $part = build ] && echo OFF || echo ON)" \
   "-DPLIANT_TEST_FOLDERS=$folders" "${options[@]}" >"build/$preset.log" 2>&1 ||

@@ -153,7 +153,7 @@ bool Surface::raw_normal(int u, int v, int step, IntPoint& out) const noexcept {
   };
   const std::int64_t nx = scaled(across, focal_x_), ny = scaled(along, focal_y_);
   const std::int64_t nz =
-      -((static_cast<std::int64_t>(z) * (2 * step) << 4) +
+      -((2 * static_cast<std::int64_t>(z) * step << 4) +
         ((nx * ray_x_[static_cast<std::size_t>(u)] + ny * ray_y_[static_cast<std::size_t>(v)]) >> 14));
   const std::int64_t largest = std::abs(nx) | std::abs(ny) | std::abs(nz);
   const int bits = 64 - std::countl_zero(static_cast<std::uint64_t>(largest));

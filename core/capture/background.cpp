@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/detect/symmetric_eigen.hpp"
+#include "core/memory/row_major.hpp"
 
 namespace pliant {
 
@@ -48,7 +49,7 @@ void BackgroundPlanes::gather(const Surface& surface) noexcept {
   for (int y = 0; y < down_; ++y)
     for (int x = 0; x < across_; ++x) {
       const int u = x * kStep + kStep / 2, v = y * kStep + kStep / 2;
-      LatticePoint& point = lattice_[static_cast<std::size_t>(y * across_ + x)];
+      LatticePoint& point = lattice_[row_major(y, across_, x)];
       point = LatticePoint();
       const std::uint16_t z8 = surface.depth_at(u, v);
       if (z8 == 0 || 2 * z8 >= kReach) continue;
@@ -85,7 +86,7 @@ std::int32_t BackgroundPlanes::connected_extent(const BackgroundPlane& plane) no
       high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
       const auto look = [&](int nx, int ny) {
         if (nx < 0 || ny < 0 || nx >= across_ || ny >= down_) return;
-        LatticePoint& next = lattice_[static_cast<std::size_t>(ny * across_ + nx)];
+        LatticePoint& next = lattice_[row_major(ny, across_, nx)];
         if (next.visited) return;
         next.visited = true;
         queue_[end++] = ny * across_ + nx;
@@ -102,9 +103,9 @@ std::int32_t BackgroundPlanes::connected_extent(const BackgroundPlane& plane) no
 
 bool BackgroundPlanes::search(const Surface& surface, BackgroundPlane& best) const noexcept {
   best.points = 0;
-  for (int k = 0; k < kCandidates; ++k) {
+  for (std::size_t k = 0; k < kCandidates; ++k) {
     // Spread over the picture row by row.
-    const std::size_t at = (static_cast<std::size_t>(2 * k + 1) * lattice_.size()) / (2 * kCandidates);
+    const std::size_t at = ((2 * k + 1) * lattice_.size()) / (2 * kCandidates);
     const LatticePoint& point = lattice_[at];
     if (!point.usable || point.plane >= 0) continue;
     Normal16 n;
@@ -117,7 +118,7 @@ bool BackgroundPlanes::search(const Surface& surface, BackgroundPlane& best) con
     plane.points = votes(plane);
     if (plane.points > best.points) best = plane;
   }
-  return best.points * kLeastShare >= used_;
+  return static_cast<std::size_t>(best.points) * kLeastShare >= used_;
 }
 
 bool BackgroundPlanes::fit(BackgroundPlane& plane) noexcept {

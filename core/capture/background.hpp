@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -46,9 +47,9 @@ class BackgroundPlanes {
   }
 
  private:
-  static constexpr int kStep = 8;          // pixels between points of the lattice
-  static constexpr int kSearchEvery = 15;  // pictures
-  static constexpr int kCandidates = 64;   // planes tried in a search
+  static constexpr int kStep = 8;                 // pixels between points of the lattice
+  static constexpr int kSearchEvery = 15;         // pictures
+  static constexpr std::size_t kCandidates = 64;  // planes tried in a search
 
   struct LatticePoint {
     IntPoint p;

@@ -8,6 +8,7 @@
 
 #include "core/camera/surface.hpp"
 #include "core/capture/capture_settings.hpp"
+#include "core/memory/row_major.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/track/model_tables.hpp"
 
@@ -85,15 +86,14 @@ class DistanceVolume {
 
  private:
   [[nodiscard]] std::size_t index(int x, int y, int z) const noexcept {
-    return static_cast<std::size_t>((z * plan_.cells + y) * plan_.cells + x);
+    return row_major(z * plan_.cells + y, plan_.cells, x);
   }
   [[nodiscard]] int node(std::int32_t x) const noexcept {
     return static_cast<int>(((x + plan_.half() + plan_.voxel / 2) * per_unit_) >> 24);
   }
   [[nodiscard]] std::size_t block_of(const IntPoint& p) const noexcept {
     const int blocks = plan_.blocks();
-    return static_cast<std::size_t>(((node(p.z) / kBlock) * blocks + node(p.y) / kBlock) * blocks +
-                                    node(p.x) / kBlock);
+    return row_major(node(p.z) / kBlock * blocks + node(p.y) / kBlock, blocks, node(p.x) / kBlock);
   }
   void activate(int block) noexcept;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/memory/row_major.hpp"
+
 namespace pliant {
 
 namespace {
@@ -121,7 +123,7 @@ ViewFuser::Sight ViewFuser::look(const ViewPicture& picture, const IntPoint& cen
   bool object = false;
   for (int y = v0 >> kTileShift; y <= v1 >> kTileShift; ++y)
     for (int x = u0 >> kTileShift; x <= u1 >> kTileShift; ++x) {
-      const Tile& tile = tiles_[static_cast<std::size_t>(y * across_ + x)];
+      const Tile& tile = tiles_[row_major(y, across_, x)];
       nearest = std::min(nearest, tile.nearest);
       farthest = std::max(farthest, tile.farthest);
       object = object || tile.object;
@@ -173,7 +175,7 @@ void ViewFuser::fuse(const ViewToFuse& view, const Surface& rays, DistanceVolume
           for (int dy = 0; dy < kBlock; ++dy) {
             const std::int32_t m[3] = {corner[0], corner[1] + dy * plan.voxel, corner[2] + dz * plan.voxel};
             std::int32_t q[3];
-            for (int k = 0; k < 3; ++k)
+            for (std::size_t k = 0; k < 3; ++k)
               q[k] = pose.r[3 * k] * m[0] + pose.r[3 * k + 1] * m[1] + pose.r[3 * k + 2] * m[2] +
                      (pose.t[k] << 14) + 8192;
             fuse_row(walk, q, volume.row(x * kBlock, y * kBlock + dy, z * kBlock + dz));

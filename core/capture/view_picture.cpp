@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/memory/row_major.hpp"
+
 namespace pliant {
 
 namespace {
@@ -30,7 +32,7 @@ void take_picture(const Surface& surface, const CellMask& mask, std::int32_t nor
       const std::uint16_t z8 = surface.depth_at(u, v);
       picture.depth[i] = z8;
       picture.facing[i] = 0;
-      if (z8 == 0 || mask.taken[static_cast<std::size_t>((v >> 1) * mask.width + (u >> 1))] == 0) continue;
+      if (z8 == 0 || mask.taken[row_major(v >> 1, mask.width, u >> 1)] == 0) continue;
       Normal16 n;
       if (!goes_on(surface, u, v, z8) ||
           !surface.normal(u, v, Surface::normal_step(z8, PixelSpan{normal_span}), n))

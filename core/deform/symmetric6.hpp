@@ -80,13 +80,18 @@ struct Factor6 {
     }
     return true;
   }
+  /// Place of an element in `lower`.
+  [[nodiscard]] static constexpr std::size_t below_diagonal(int row, int column) noexcept {
+    const auto r = static_cast<std::size_t>(row);
+    return r * (r - 1) / 2 + static_cast<std::size_t>(column);
+  }
   [[nodiscard]] Vector6 solve(const Vector6& b) const noexcept {
     Vector6 x = b;
     for (int i = 1; i < 6; ++i)
-      for (int k = 0; k < i; ++k) x[i] -= lower[static_cast<std::size_t>(i * (i - 1) / 2 + k)] * x[k];
+      for (int k = 0; k < i; ++k) x[i] -= lower[below_diagonal(i, k)] * x[k];
     for (int i = 0; i < 6; ++i) x[i] *= inverse[static_cast<std::size_t>(i)];
     for (int i = 4; i >= 0; --i)
-      for (int k = i + 1; k < 6; ++k) x[i] -= lower[static_cast<std::size_t>(k * (k - 1) / 2 + i)] * x[k];
+      for (int k = i + 1; k < 6; ++k) x[i] -= lower[below_diagonal(k, i)] * x[k];
     return x;
   }
 };

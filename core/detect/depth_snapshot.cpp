@@ -18,22 +18,22 @@ int reduction(const Intrinsics& camera) noexcept {
 }  // namespace
 
 Intrinsics reduced_intrinsics(const Intrinsics& camera) noexcept {
-  const int n = reduction(camera);
+  const int n = reduction(camera), middle = n / 2;
   Intrinsics reduced = camera;
   reduced.width = camera.width / n;
   reduced.height = camera.height / n;
   reduced.fx = camera.fx / n;
   reduced.fy = camera.fy / n;
-  // Reduced pixel u stands at full pixel n·u + n/2.
-  reduced.cx = (camera.cx - n / 2) / n;
-  reduced.cy = (camera.cy - n / 2) / n;
+  // Reduced pixel u stands at full pixel n·u + middle.
+  reduced.cx = (camera.cx - middle) / n;
+  reduced.cy = (camera.cy - middle) / n;
   return reduced;
 }
 
 void DepthSnapshot::lay_out(Workspace& workspace, const Intrinsics& camera) noexcept {
   camera_ = reduced_intrinsics(camera);
-  depth_ = workspace.take<std::uint16_t>(static_cast<std::size_t>(width() * height()));
-  normals_ = workspace.take<Normal16>(static_cast<std::size_t>(lattice_width() * lattice_height()));
+  depth_ = workspace.take<std::uint16_t>(table_size(width(), height()));
+  normals_ = workspace.take<Normal16>(table_size(lattice_width(), lattice_height()));
 }
 
 void DepthSnapshot::start(const Intrinsics& camera, const SensorDescription& sensor) noexcept {
@@ -64,7 +64,7 @@ void DepthSnapshot::take(const Surface& surface) noexcept {
 void DepthSnapshot::compute_normals(int first, int last, double metres) noexcept {
   for (int row = std::max(first, 0); row < std::min(last, lattice_height()); ++row)
     for (int column = 0; column < lattice_width(); ++column) {
-      Normal16& n = normals_[static_cast<std::size_t>(row * lattice_width() + column)];
+      Normal16& n = normals_[row_major(row, lattice_width(), column)];
       if (!fit_normal(column * kNormalStep, row * kNormalStep, metres, n)) n = Normal16();
     }
 }
@@ -73,7 +73,7 @@ void DepthSnapshot::mark_plain(double metres) noexcept {
   constexpr double kAlike = 0.978 * 16384 * 16384;  // cos 12°
   for (int v = 0; v < height(); v += kNormalStep)
     for (int u = 0; u < width(); u += kNormalStep) {
-      Normal16& n = normals_[static_cast<std::size_t>((v / kNormalStep) * lattice_width() + u / kNormalStep)];
+      Normal16& n = normals_[row_major(v / kNormalStep, lattice_width(), u / kNormalStep)];
       if (n.x == 0 && n.y == 0 && n.z == 0) continue;
       const Point3f p = vertex(u, v);
       const double z = static_cast<double>(p.z);

@@ -8,6 +8,7 @@
 #include "core/camera/intrinsics.hpp"
 #include "core/camera/sensor.hpp"
 #include "core/camera/surface.hpp"
+#include "core/memory/row_major.hpp"
 #include "core/memory/workspace.hpp"
 
 namespace pliant {
@@ -44,12 +45,12 @@ class DepthSnapshot {
 
   /// 1/8 mm, 0 = none. No bounds check.
   [[nodiscard]] std::uint16_t depth(int u, int v) const noexcept {
-    return depth_[static_cast<std::size_t>(v * camera_.width + u)];
+    return depth_[row_major(v, camera_.width, u)];
   }
   /// Normal (towards the camera, Q14) of the lattice point nearest before pixel (u, v); zero where there is
   /// none.
   [[nodiscard]] const Normal16& normal(int u, int v) const noexcept {
-    return normals_[static_cast<std::size_t>((v / kNormalStep) * lattice_width() + u / kNormalStep)];
+    return normals_[row_major(v / kNormalStep, lattice_width(), u / kNormalStep)];
   }
   /// Vertex of a pixel, metres, camera frame.
   [[nodiscard]] Point3f vertex(int u, int v) const noexcept {

@@ -45,8 +45,9 @@ void FrameDetector::lay_out(Workspace& workspace, const ModelView& model, const 
   key_points_ = workspace.take<Point3f>(settings_.keypoints);
   descriptors_ = workspace.take<Descriptor>(settings_.keypoints);
   frames_ = workspace.take<LocalFrame>(settings_.keypoints);
-  matches_ = workspace.take<Match>(settings_.keypoints * settings_.matches);
-  proposals_ = workspace.take<Proposal>(settings_.keypoints * settings_.matches);
+  const std::size_t choices = static_cast<std::size_t>(settings_.keypoints) * settings_.matches;
+  matches_ = workspace.take<Match>(choices);
+  proposals_ = workspace.take<Proposal>(choices);
   const std::size_t keypoints = static_cast<std::size_t>(settings_.rounds) * settings_.keypoints;
   votes_.lay_out(workspace, keypoints * settings_.matches, keypoints);
 }

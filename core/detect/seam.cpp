@@ -9,8 +9,9 @@ namespace pliant {
 
 namespace {
 
-constexpr int kSide = 32;        // cells
-constexpr float kReach = 1.35F;  // half of the grid in model radii
+constexpr int kSide = 32;           // cells
+constexpr int kMiddle = kSide / 2;  // the cell of the axis
+constexpr float kReach = 1.35F;     // half of the grid in model radii
 
 constexpr float kLeastPixels = 4;  // a cell's edge: depth sensors smear edges over several pixels
 constexpr float kAlike = 0.82F;    // cos 35°: what the noise of two fitted normals leaves of one direction
@@ -59,8 +60,8 @@ SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot
     const Point3f p = fast.point(model.positions()[i]);
     if (p.z < 0.5F * cz) continue;
     const float scale = cz / p.z;
-    const auto column = static_cast<int>(std::floor((p.x * scale - cx) / cell_edge)) + kSide / 2;
-    const auto row = static_cast<int>(std::floor((p.y * scale - cy) / cell_edge)) + kSide / 2;
+    const auto column = static_cast<int>(std::floor((p.x * scale - cx) / cell_edge)) + kMiddle;
+    const auto row = static_cast<int>(std::floor((p.y * scale - cy) / cell_edge)) + kMiddle;
     if (column < 0 || row < 0 || column >= kSide || row >= kSide) continue;
     Cell& cell = grid[row][column];
     if (cell.depth == 0 || p.z < cell.depth) {
@@ -96,8 +97,8 @@ SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot
           }
         }
       if (nearest == nullptr || nearest_square <= 2) continue;
-      const Point3f ray = {cx + (static_cast<float>(column - kSide / 2) + 0.5F) * cell_edge,
-                           cy + (static_cast<float>(row - kSide / 2) + 0.5F) * cell_edge, cz};
+      const Point3f ray = {cx + (static_cast<float>(column - kMiddle) + 0.5F) * cell_edge,
+                           cy + (static_cast<float>(row - kMiddle) + 0.5F) * cell_edge, cz};
       Point3f point, normal;
       if (!look(snapshot, ray, point, normal)) continue;
       ++evidence.ring;

@@ -84,9 +84,10 @@ bool ShotDescriber::find_frame(LocalFrame& frame, float (&axes)[9], float* lean)
   const Vector3 y(z.y() * x.z() - z.z() * x.y(), z.z() * x.x() - z.x() * x.z(),
                   z.x() * x.y() - z.y() * x.x());
   for (int i = 0; i < 3; ++i) {
-    frame.axes[static_cast<std::size_t>(i)] = to_q14(x(i));
-    frame.axes[static_cast<std::size_t>(3 + i)] = to_q14(y(i));
-    frame.axes[static_cast<std::size_t>(6 + i)] = to_q14(z(i));
+    const auto place = static_cast<std::size_t>(i);
+    frame.axes[place] = to_q14(x(i));
+    frame.axes[3 + place] = to_q14(y(i));
+    frame.axes[6 + place] = to_q14(z(i));
     axes[i] = static_cast<float>(x(i));
     axes[3 + i] = static_cast<float>(y(i));
     axes[6 + i] = static_cast<float>(z(i));

@@ -3,6 +3,13 @@
 #include <cmath>
 #include <cstring>
 
+// Before a loop: its rounds do not read what others write.
+#ifdef __clang__
+#define PLIANT_INDEPENDENT_ROUNDS _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define PLIANT_INDEPENDENT_ROUNDS _Pragma("GCC ivdep")
+#endif
+
 namespace pliant {
 
 namespace {
@@ -59,7 +66,7 @@ void ShotBins::place(const ShotPoints& points) noexcept {
   std::int32_t *azimuth_bin = azimuth_bin_.data(), *cosine_bin = cosine_bin_.data();
   float *azimuth_part = azimuth_part_.data(), *cosine_part = cosine_part_.data();
   float *up = up_.data(), *outer = outer_.data(), *weight = weight_.data();
-#pragma GCC ivdep
+  PLIANT_INDEPENDENT_ROUNDS
   for (std::size_t k = 0; k < count; ++k) {
     const float cosine = zx * nx[k] + zy * ny[k] + zz * nz[k];
     const float cosine_at = clamp01(0.5F * cosine + 0.5F) * (kCosineBins - 1);
@@ -71,7 +78,7 @@ void ShotBins::place(const ShotPoints& points) noexcept {
     // model knows and a picture does not.
     weight[k] = clamp01(cosine);
   }
-#pragma GCC ivdep
+  PLIANT_INDEPENDENT_ROUNDS
   for (std::size_t k = 0; k < count; ++k) {
     const float lx = xx * px[k] + xy * py[k] + xz * pz[k];
     const float ly = yx * px[k] + yy * py[k] + yz * pz[k];
@@ -84,7 +91,7 @@ void ShotBins::place(const ShotPoints& points) noexcept {
     azimuth_bin[k] = bin;
     azimuth_part[k] = at - static_cast<float>(bin);
   }
-#pragma GCC ivdep
+  PLIANT_INDEPENDENT_ROUNDS
   for (std::size_t k = 0; k < count; ++k) {
     // Elevation centres at ±45°: linear in the sine between them. Radial centres at 1/4 and 3/4.
     const float lz = zx * px[k] + zy * py[k] + zz * pz[k];
@@ -104,7 +111,7 @@ bool ShotBins::fill(const ShotPoints& points, Descriptor& descriptor) noexcept {
     const float outer = outer_[k], inner = 1 - outer;
     const Shells shells = {low * inner, low * outer, high * inner, high * outer};
     const Shells far = shells * cosine_part_[k], near = shells - far;
-    const std::int32_t azimuth = azimuth_bin_[k], next = (azimuth + 1) & (kAzimuths - 1);
+    const std::ptrdiff_t azimuth = azimuth_bin_[k], next = (azimuth + 1) & (kAzimuths - 1);
     const Shells far_next = far * azimuth_part_[k], near_next = near * azimuth_part_[k];
     Shells* here = bins + azimuth * kCosineBins + cosine_bin_[k];
     here[0] += near - near_next;

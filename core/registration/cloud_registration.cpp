@@ -1,4 +1,5 @@
 #include "core/registration/cloud_registration.hpp"
+#include "core/memory/row_major.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -171,7 +172,7 @@ void CloudRegistration::read_points(const DepthFrame& frame, const Intrinsics& c
   const double square = kReach * kReach * s.model.radius() * s.model.radius();
   for (int v = 0; v < frame.height; ++v)
     for (int u = 0; u < frame.width; ++u) {
-      Point3f& point = s.picture_points[static_cast<std::size_t>(v * frame.width + u)];
+      Point3f& point = s.picture_points[row_major(v, frame.width, u)];
       point = {kNone, kNone, kNone};
       const double z = frame.depth[v * frame.stride + u] * scale;
       if (z < sensor.near_limit || z > sensor.far_limit) continue;

@@ -1,4 +1,5 @@
 #include "core/registration/depth_search.hpp"
+#include "core/memory/row_major.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -190,7 +191,7 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
     const int u = static_cast<int>(std::floor(camera.fx * q.x() / q.z() + camera.cx + 0.5));
     const int v = static_cast<int>(std::floor(camera.fy * q.y() / q.z() + camera.cy + 0.5));
     if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-    std::uint16_t& d = s.picture[static_cast<std::size_t>(v * camera.width + u)];
+    std::uint16_t& d = s.picture[row_major(v, camera.width, u)];
     const auto reading = static_cast<std::uint16_t>(q.z() * kDrawnUnitsPerMetre + 0.5);
     if (d == 0 || reading < d) d = reading;
   }
@@ -207,7 +208,7 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
     const int u = static_cast<int>(std::floor(camera.fx * q.x() / q.z() + camera.cx + 0.5));
     const int v = static_cast<int>(std::floor(camera.fy * q.y() / q.z() + camera.cy + 0.5));
     if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-    const double nearest = s.picture[static_cast<std::size_t>(v * camera.width + u)] / kDrawnUnitsPerMetre;
+    const double nearest = s.picture[row_major(v, camera.width, u)] / kDrawnUnitsPerMetre;
     ++drawn;
     seen += q.z() - nearest < 0.02 * q.z() ? 1U : 0U;
   }

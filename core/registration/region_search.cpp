@@ -132,7 +132,7 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
       best = gain;
       pose = trial;
     }
-    if (2 * best.points > part) break;  // most of what is open: nothing can beat it
+    if (best.points > part / 2) break;  // most of what is open: nothing can beat it
   }
   if (best.points == 0) return false;
   // A part that turned by little is half explained by the region that it hangs on: what is open of it may be

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/memory/row_major.hpp"
 #include "tests/accuracy/registration_runs.hpp"
 #include "tests/accuracy/view_maker.hpp"
 
@@ -58,7 +59,7 @@ std::vector<Point3f> cloud_of(const std::vector<std::uint16_t>& picture, const I
   std::vector<Point3f> points;
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
-      const double z = picture[static_cast<std::size_t>(v * camera.width + u)] / camera.depth_scale;
+      const double z = picture[row_major(v, camera.width, u)] / camera.depth_scale;
       if (z > 0)
         points.push_back({static_cast<float>((u - camera.cx) / camera.fx * z),
                           static_cast<float>((v - camera.cy) / camera.fy * z), static_cast<float>(z)});
@@ -70,7 +71,7 @@ void print_views(const Mesh& target, const std::vector<Mesh>& others, int views,
                  const RegistrationSettings& settings) {
   const BuiltFromFile model(geometry_of(target));
   const Intrinsics camera = structure_camera();
-  ReadyRegistration run(model.view, static_cast<std::size_t>(camera.width * camera.height), settings);
+  ReadyRegistration run(model.view, table_size(camera.width, camera.height), settings);
   ViewMaker maker(target, others);
   int right = 0, wrong = 0, claims = 0;
   std::uint64_t seed = 1;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/memory/row_major.hpp"
 #include "tests/accuracy/registration_runs.hpp"
 #include "tests/accuracy/view_maker.hpp"
 
@@ -38,7 +39,7 @@ int look(int argc, char** argv) {
   const int views = std::max(1, std::atoi(argv[2]));
   std::uint64_t seed = std::strtoull(argv[3], nullptr, 10);
   const Intrinsics camera = structure_camera();
-  ReadyRegistration run(model.view, static_cast<std::size_t>(camera.width * camera.height));
+  ReadyRegistration run(model.view, table_size(camera.width, camera.height));
   if (run.fault != nullptr) {
     std::fprintf(stderr, "random_views: %s\n", run.fault);
     return 2;

@@ -14,6 +14,7 @@
 
 #include "core/camera/intrinsics.hpp"
 #include "core/detect/shot.hpp"
+#include "core/memory/row_major.hpp"
 #include "core/model/model_view.hpp"
 
 namespace pliant::testing {
@@ -224,7 +225,7 @@ inline const ModelView& bumpy_model() {
 /// pixels.
 inline std::vector<std::uint16_t> depth_picture(const Intrinsics& camera, const TestCloud& cloud, double wall,
                                                 int splat, double noise, unsigned seed = 1) {
-  std::vector<double> z(static_cast<std::size_t>(camera.width * camera.height), wall);
+  std::vector<double> z(table_size(camera.width, camera.height), wall);
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
     const Vector3 p = vector3(cloud.positions[i]);
     const Normal16& n = cloud.normals[i];

@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "core/memory/row_major.hpp"
 #include "tests/core/track_scene.hpp"
 
 namespace pliant {
@@ -24,7 +25,7 @@ class RadiusSearch : public ::testing::Test {
     scene_.see(picture);
     scene_.place(usual_pose());
     for (int i = 0; i < 5; ++i) (void)scene_.label_now();
-    taken_.resize(static_cast<std::size_t>(scene_.camera.width * scene_.camera.height + 31) / 32);
+    taken_.resize((table_size(scene_.camera.width, scene_.camera.height) + 31) / 32);
   }
   static Vector3 dented(const Vector3& p) {
     return p * (1 - 0.3 * std::clamp((p.x() - 0.03) * 50, 0.0, 1.0));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/memory/row_major.hpp"
 #include "tests/core/synthetic.hpp"
 
 namespace pliant {
@@ -229,7 +230,7 @@ TEST(Surface, EveryBodyAndStrideGivesTheSamePicture) {
     Observed scalar(camera, Kernels::scalar), sse(camera, Kernels::sse), avx2(camera, Kernels::avx2),
         neon(camera, Kernels::neon);
     const int stride = width + 5;
-    std::vector<std::uint16_t> raw(static_cast<std::size_t>(stride * (height - 1) + width));
+    std::vector<std::uint16_t> raw(row_major(height - 1, stride, width));
     for (int round = 0; round < 6; ++round) {
       for (std::uint16_t& x : raw)
         x = static_cast<std::uint16_t>(round % 2 == 0      ? random()

@@ -6,6 +6,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "core/memory/row_major.hpp"
 #include "drivers/model_files/model_builder.hpp"
 
 namespace pliant::synthetic {
@@ -95,7 +96,7 @@ double degrees_between(const Matrix3& a, const Matrix3& b) {
 }
 
 Picture::Picture(const Intrinsics& camera)
-    : camera_(camera), depth_(static_cast<std::size_t>(camera.width * camera.height), 0.0) {}
+    : camera_(camera), depth_(table_size(camera.width, camera.height), 0.0) {}
 
 void Picture::draw(const Geometry& mesh, const RigidTransform& pose) {
   draw(mesh, pose, [](const Vector3& p) { return p; });
@@ -124,7 +125,7 @@ void Picture::draw(const Geometry& mesh, const RigidTransform& pose,
         const double wc = ((b.x() - a.x()) * (v - a.y()) - (b.y() - a.y()) * (u - a.x())) / area;
         if (wb < -1e-9 || wc < -1e-9 || wb + wc > 1 + 1e-9) continue;
         const double z = 1 / ((1 - wb - wc) * a.z() + wb * b.z() + wc * c.z());
-        double& old = depth_[static_cast<std::size_t>(v * camera_.width + u)];
+        double& old = depth_[row_major(v, camera_.width, u)];
         if (z > 0 && (old == 0 || z < old)) old = z;
       }
   }
@@ -138,7 +139,7 @@ void Picture::wall(double depth) {
 void Picture::block(int u0, int v0, int u1, int v1, double depth) {
   for (int v = std::max(v0, 0); v < std::min(v1, camera_.height); ++v)
     for (int u = std::max(u0, 0); u < std::min(u1, camera_.width); ++u)
-      depth_[static_cast<std::size_t>(v * camera_.width + u)] = depth;
+      depth_[row_major(v, camera_.width, u)] = depth;
 }
 
 void Picture::shake(double sigma, unsigned seed) {

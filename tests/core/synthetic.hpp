@@ -8,6 +8,7 @@
 #include "core/camera/depth_frame.hpp"
 #include "core/camera/intrinsics.hpp"
 #include "core/geometry/rigid_transform.hpp"
+#include "core/memory/row_major.hpp"
 #include "core/memory/workspace.hpp"
 #include "drivers/geometry_files/geometry.hpp"
 #include "drivers/model_files/model_file.hpp"
@@ -49,9 +50,7 @@ class Picture {
 
   /// The drawn depth in raw units; valid until the next change.
   [[nodiscard]] DepthFrame frame(std::int64_t number = 0);
-  [[nodiscard]] double depth(int u, int v) const {
-    return depth_[static_cast<std::size_t>(v * camera_.width + u)];
-  }
+  [[nodiscard]] double depth(int u, int v) const { return depth_[row_major(v, camera_.width, u)]; }
 
  private:
   Intrinsics camera_;

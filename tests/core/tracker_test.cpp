@@ -1,5 +1,6 @@
 // The tracker as its users meet it.
 #include "core/tracker.hpp"
+#include "core/memory/row_major.hpp"
 
 #include <gtest/gtest.h>
 
@@ -169,7 +170,7 @@ TEST_F(TrackerTest, DoesNotUseFramesThatCannotBe) {
 
 TEST_F(TrackerTest, SurvivesWildPictures) {
   start();
-  std::vector<std::uint16_t> wild(static_cast<std::size_t>(camera_.width * camera_.height));
+  std::vector<std::uint16_t> wild(table_size(camera_.width, camera_.height));
   std::uint32_t state = 1;
   for (int frame = 0; frame < 12; ++frame) {
     for (std::uint16_t& d : wild) {

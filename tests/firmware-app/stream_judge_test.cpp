@@ -1,5 +1,6 @@
 // Faulty streams are told from sound ones.
 #include "firmware-app/pipeline/stream_judge.hpp"
+#include "core/memory/row_major.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ struct Stream {
         at(u, v) = static_cast<std::uint16_t>((box ? 800 : 1200 + 2 * u + v) + noise(random));
       }
   }
-  std::uint16_t& at(int u, int v) { return pixels[static_cast<std::size_t>(v * 320 + u)]; }
+  std::uint16_t& at(int u, int v) { return pixels[row_major(v, 320, u)]; }
   StreamFault next(std::int64_t delay_us = 0, std::int64_t interval_ns = kFrameNs) {
     now_ns += interval_ns;
     const DepthFrame frame{pixels.data(), 320, 240, 320, now_ns / 1000 - delay_us, 0};

@@ -12,7 +12,7 @@ namespace pliant::soak {
 void end_neighbour(pid_t process);
 
 inline constexpr const char* kSlowSubscriber = "--slow-subscriber";  ///< takes 20 ms for each message
-inline constexpr const char* kBusy = "--busy";                       ///< computes and moves memory without end
+inline constexpr const char* kBusy = "--busy";  ///< computes and moves memory without end
 /// What main() does for such a role; returns when it is none.
 void play_neighbour(std::string_view role);
 
