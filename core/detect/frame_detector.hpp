@@ -77,6 +77,8 @@ class FrameDetector {
   [[nodiscard]] DetectState state() const noexcept { return state_; }
   /// What the next slice works on; kept when the search ends.
   [[nodiscard]] Phase phase() const noexcept { return phase_; }
+  /// The distinct poses that were looked at closely so far, in no order.
+  [[nodiscard]] std::span<const PoseCandidate> candidates() const noexcept { return finalists_.all(); }
   /// Scene keypoints described so far.
   [[nodiscard]] std::size_t keypoints_used() const noexcept { return keypoints_used_; }
   /// What the search took so far, in units of about 1000 instructions.
