@@ -27,7 +27,7 @@ void Coverage::add(const RigidTransform& pose, std::uint32_t times) noexcept {
   if (!(distance > 0)) return;
   const double sine = camera.z() / distance;
   const int height = sine < kSin20 ? 0 : sine < kSin50 ? 1 : 2;
-  views_[static_cast<std::size_t>(height * kSectors + sector_of(camera.x(), camera.y()))] += times;
+  views_[row_major(height, kSectors, sector_of(camera.x(), camera.y()))] += times;
 }
 
 bool Coverage::seen(int sector) const noexcept {

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/geometry/rigid_transform.hpp"
+#include "core/memory/row_major.hpp"
 
 namespace pliant {
 
@@ -19,7 +20,7 @@ class Coverage {
   /// A view at `pose` (camera <- model, the model's z upright) was fused; it counts as `times` of them.
   void add(const RigidTransform& pose, std::uint32_t times = 1) noexcept;
   [[nodiscard]] std::uint32_t views(int sector, int height) const noexcept {
-    return views_[static_cast<std::size_t>(height * kSectors + sector)];
+    return views_[row_major(height, kSectors, sector)];
   }
   /// Seen from there at any height, often enough to count.
   [[nodiscard]] bool seen(int sector) const noexcept;
@@ -31,7 +32,7 @@ class Coverage {
   static constexpr std::uint32_t kEnoughViews = 3;
 
  private:
-  std::array<std::uint32_t, kSectors * kHeights> views_{};
+  std::array<std::uint32_t, table_size(kSectors, kHeights)> views_{};
 };
 
 }  // namespace pliant

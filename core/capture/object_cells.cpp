@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/memory/row_major.hpp"
+
 namespace pliant {
 
 namespace {
@@ -61,7 +63,7 @@ std::size_t ObjectCells::flood(const Surface& surface, int seed, unsigned kinds,
     const auto look = [&](int du, int dv) {
       const int nu = u + du, nv = v + dv;
       if (nu < 0 || nv < 0 || nu >= width_ || nv >= height_) return;
-      const auto next = static_cast<std::size_t>(nv * width_ + nu);
+      const std::size_t next = row_major(nv, width_, nu);
       if (marked_[next] == mark || (kinds & bit(kind_[next])) == 0) return;
       if (std::abs(surface.depth_at(2 * nu, 2 * nv) - z8) > limit) return;
       marked_[next] = mark;
@@ -244,7 +246,7 @@ std::size_t ObjectCells::sample(const Surface& surface, std::int32_t normal_span
   std::size_t count = 0, seen = 0;
   for (int cv = 0; cv < height_; ++cv)
     for (int cu = 0; cu < width_; ++cu) {
-      if (taken_[static_cast<std::size_t>(cv * width_ + cu)] == 0) continue;
+      if (taken_[row_major(cv, width_, cu)] == 0) continue;
       const std::size_t before = seen * out.size() / all;
       ++seen;
       if (all > out.size() && before == seen * out.size() / all) continue;
