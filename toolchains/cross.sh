@@ -7,7 +7,7 @@
 #   --sysroot DIR   the board's own root of headers and libraries; else Debian's packages are unpacked into
 #                   build/sysroot/ARCH
 #   --build-only    no test
-#   --quick         only the core, its tests and the comparison: what continuous integration has time for
+#   --quick         only the core, its tests and the comparison
 #   --guest         only what runs in a virtual machine (tests/vm): built, not run
 #   --count         only the instructions of a frame (64 bit), against tests/cross/instruction_limits.txt
 # Needs the Debian packages g++-aarch64-linux-gnu or g++-arm-linux-gnueabihf, and qemu-user (./dev cross installs

@@ -10,7 +10,7 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
   out.normal = normal;
   out.point = point;
   int u = 0, v = 0;
-  if (!faces_camera(out.point, out.normal, kLeastFacing) || !projector_.project(out.point, u, v)) return out;
+  if (!faces_camera(out.point, out.normal, 0) || !projector_.project(out.point, u, v)) return out;
   out.facing = true;
   const std::int32_t limit = tolerance_.deformed(out.point.z);
   if (try_pixel(u, v, limit, out)) return out;

@@ -47,8 +47,6 @@ class Sighting {
   }
 
  private:
-  static constexpr std::int32_t kLeastFacing = 0;
-
   bool try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept;
 
   const ModelTables& model_;

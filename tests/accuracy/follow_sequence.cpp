@@ -27,18 +27,11 @@ double thread_us() {
   return 1e3 * thread_ms();
 }
 
-double median(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
 /// Processor time of the stages of one frame.
-struct StageClock {
+struct FrameClock {
   double last = 0, deform = 0;
   static void done(void* context, Stage stage) {
-    auto& clock = *static_cast<StageClock*>(context);
+    auto& clock = *static_cast<FrameClock*>(context);
     const double now = thread_us();
     if (stage == Stage::deform) clock.deform += now - clock.last;
     clock.last = now;
@@ -81,8 +74,15 @@ int follow(const std::filesystem::path& recording, const std::filesystem::path& 
                {"temporal_evidence", &TrackSteps::temporal_evidence},
                {"merge_and_split", &TrackSteps::merge_and_split},
                {"robust_weights", &TrackSteps::robust_weights}};
-  for (const auto& step : steps)
-    if (without == step.name) settings.steps.*step.step = false;
+  bool known = without.empty();
+  for (const auto& step : steps) {
+    if (without != step.name) continue;
+    settings.steps.*step.step = false;
+    known = true;
+  }
+  if (!known)
+    return fail("unknown step '" + without +
+                "'; input_filter, temporal_evidence, merge_and_split and robust_weights are known");
 
   const ModelView& view = model.view;
   const Intrinsics& camera = (*source)->intrinsics();
@@ -90,8 +90,8 @@ int follow(const std::filesystem::path& recording, const std::filesystem::path& 
   Tracker tracker;
   if (const char* fault = tracker.start(view, camera, (*source)->sensor(), settings, block.bytes))
     return fail(fault);
-  StageClock clock;
-  tracker.observe({&StageClock::done, &clock});
+  FrameClock clock;
+  tracker.observe({&FrameClock::done, &clock});
 
   std::vector<Point3f> places;
   PointsPlyWriter writer(view.positions());
@@ -135,8 +135,8 @@ int follow(const std::filesystem::path& recording, const std::filesystem::path& 
       "{{\"frames\": {}, \"tracked\": {}, \"region_changes\": {}, \"regions_came\": {}, \"frame_us\": "
       "{:.0f}, "
       "\"warp_us\": {:.0f}, \"rigid_us\": {:.0f}, \"radius_us\": {:.0f}}}\n",
-      frames, all.size(), changes.of_points, changes.regions_came, median(all), median(deform), median(rigid),
-      median(radius));
+      frames, all.size(), changes.of_points, changes.regions_came, median_of(all), median_of(deform),
+      median_of(rigid), median_of(radius));
   return 0;
 }
 

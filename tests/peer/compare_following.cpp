@@ -1,7 +1,7 @@
 // Pliant's tracker beside PCL's projective ICP on the same recording, frame by frame in turn, one thread
 // each:
 //   compare_following RECORDING
-// Both begin at the pose of RECORDING/groundtruth.txt in its first frame. Prints a row: processor time of a
+// Both begin at the pose of RECORDING/groundtruth.txt's first line. Prints a row: processor time of a
 // frame, median, and how far the base is off that truth, median.
 #include <fmt/format.h>
 
@@ -18,13 +18,6 @@
 namespace pliant {
 namespace {
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
 struct Column {
   std::vector<double> ms, degrees, millimetres;
 
@@ -34,7 +27,8 @@ struct Column {
     millimetres.push_back(1e3 * (pose * centre - truth * centre).norm());
   }
   [[nodiscard]] std::string text() const {
-    return fmt::format("{:.2f} | {:.2f}° {:.2f} mm", median(ms), median(degrees), median(millimetres));
+    return fmt::format("{:.2f} | {:.2f}° {:.2f} mm", median_of(ms), median_of(degrees),
+                       median_of(millimetres));
   }
 };
 
@@ -74,7 +68,8 @@ int compare(const std::filesystem::path& recording) {
   auto source = open_recording(recording);
   if (!source) return fail(source.error().message);
   const auto truth = read_pose_list((recording / "groundtruth.txt").string());
-  if (!truth || truth->empty()) return fail("no groundtruth.txt in " + recording.string());
+  if (!truth) return fail(truth.error().message);
+  if (truth->empty()) return fail("no pose in " + (recording / "groundtruth.txt").string());
   const BuiltFromFile model(recording / "model.ply");
   if (!model.good) return fail("no model.ply in " + recording.string());
   const Intrinsics& camera = (*source)->intrinsics();
@@ -99,11 +94,11 @@ int compare(const std::filesystem::path& recording) {
 
   Column ours, of_half, of_full;
   SourceItem item;
-  std::size_t frame = 0;
-  for ((*source)->next(1000, item); item.event != SourceEvent::end && frame < truth->size();
-       (*source)->next(1000, item)) {
+  for ((*source)->next(1000, item); item.event != SourceEvent::end; (*source)->next(1000, item)) {
     if (item.event != SourceEvent::frame) continue;
-    const RigidTransform true_pose = (*truth)[frame++].transform();
+    const StampedPose* const now = pose_at(*truth, static_cast<double>(item.frame.utime) * 1e-6);
+    if (now == nullptr) continue;
+    const RigidTransform true_pose = now->transform();
     const peer::Picture picture{
         item.frame.depth,  camera.width, camera.height, static_cast<int>(item.frame.stride),
         camera.fx,         camera.fy,    camera.cx,     camera.cy,
@@ -120,8 +115,8 @@ int compare(const std::filesystem::path& recording) {
     }
   }
   fmt::print("| {} ({} points) | {} | {} | {:.1f}× | {} | {:.1f}× |\n", recording.filename().string(),
-             model.view.size(), ours.text(), of_half.text(), median(of_half.ms) / median(ours.ms),
-             of_full.text(), median(of_full.ms) / median(ours.ms));
+             model.view.size(), ours.text(), of_half.text(), median_of(of_half.ms) / median_of(ours.ms),
+             of_full.text(), median_of(of_full.ms) / median_of(ours.ms));
   return 0;
 }
 
