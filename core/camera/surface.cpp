@@ -35,6 +35,7 @@ void Surface::lay_out(Workspace& workspace, const Intrinsics& camera) noexcept {
   const auto width = static_cast<std::size_t>(camera.width), height = static_cast<std::size_t>(camera.height);
   stride_ = round_up(width) + 2 * kMargin;
   smooth_ = workspace.take<std::uint16_t>(stride_ * (height + 2 * static_cast<std::size_t>(kMostStep)));
+  normals_ = workspace.take<KeptNormal>(width * height);
   converted_ = workspace.take<std::uint16_t>(stride_ * (kRing + 1));
   cleaned_ = workspace.take<std::uint16_t>(stride_ * kRing);
   ray_x_ = workspace.take<std::int16_t>(width);
@@ -63,6 +64,7 @@ void Surface::start(const Intrinsics& camera, const SensorDescription& sensor, K
   }
   for (const std::span<std::uint16_t>& buffer : {smooth_, converted_, cleaned_})
     clear(buffer.data(), buffer.size());
+  std::fill(normals_.begin(), normals_.end(), KeptNormal());
   picture_ = smooth_.data() + stride_ * static_cast<std::size_t>(kMostStep) + kMargin;
   window_ = Window();
 }
@@ -92,6 +94,8 @@ void Surface::build(const DepthFrame& frame, Window window) noexcept {
   const auto row_of = [&](std::span<std::uint16_t> rows, int v) -> const std::uint16_t* {
     return v < wide.v0 || v >= wide.v1 ? nothing : ring(rows, v);
   };
+  for (int v = window_.v0; v < window_.v1; ++v)
+    std::fill_n(normals_.begin() + static_cast<std::ptrdiff_t>(v) * width_ + window_.u0, count, KeptNormal());
   // One row after the other through the three stages, each a row behind the one before.
   for (int v = wide.v0; v < wide.v1 + 2; ++v) {
     if (v < wide.v1) {
@@ -120,10 +124,12 @@ PixelSpan Surface::pixel_span(double metres) const noexcept {
   return {static_cast<std::int32_t>(std::clamp(metres * kDepthUnitsPerMetre * camera_.fx, 0.0, 1e9))};
 }
 
-bool Surface::raw_normal(int u, int v, int step, IntPoint& out) const noexcept {
+Surface::KeptNormal Surface::take_normal(int u, int v, int step) const noexcept {
+  KeptNormal out;
+  out.step = static_cast<std::uint8_t>(step);
   const std::uint16_t* const here = at(u, v);
   const std::int32_t z = *here;
-  if (z == 0) return false;
+  if (z == 0) return out;
   const std::int32_t limit = rule_.limit(static_cast<std::uint16_t>(z)) * step;
   const std::ptrdiff_t down = static_cast<std::ptrdiff_t>(stride_) * step;
   // Difference over `sides` steps along one axis; 0 sides where neither neighbour is of this surface.
@@ -144,7 +150,7 @@ bool Surface::raw_normal(int u, int v, int step, IntPoint& out) const noexcept {
     return s;
   };
   const Slope across = slope(step), along = slope(down);
-  if (across.sides == 0 || along.sides == 0) return false;
+  if (across.sides == 0 || along.sides == 0) return out;
   // The tangent plane of z(u, v) seen through the pinhole: (f·dz/du, f·dz/dv, -(z + f·dz/du·x + f·dz/dv·y))
   // with the ray (x, y, 1), times `steps` = 2 · step pixels, in Q4. Bounds: a difference over two steps is
   // below 4095 · 16 = 2^16, f·dz below 2^16 · 10000 · 2^4 = 2^33.3, the sum below 2^35.4.
@@ -158,14 +164,22 @@ bool Surface::raw_normal(int u, int v, int step, IntPoint& out) const noexcept {
   const std::int64_t largest = std::abs(nx) | std::abs(ny) | std::abs(nz);
   const int bits = 64 - std::countl_zero(static_cast<std::uint64_t>(largest));
   const int shift = bits > 14 ? bits - 14 : 0;
-  out = {static_cast<std::int32_t>(nx >> shift), static_cast<std::int32_t>(ny >> shift),
-         static_cast<std::int32_t>(nz >> shift)};
-  return true;
+  out.x = static_cast<std::int16_t>(nx >> shift);
+  out.y = static_cast<std::int16_t>(ny >> shift);
+  out.z = static_cast<std::int16_t>(nz >> shift);
+  out.exists = 1;
+  return out;
+}
+
+const Surface::KeptNormal& Surface::raw_normal(int u, int v, int step) const noexcept {
+  KeptNormal& kept = normals_[static_cast<std::size_t>(v * width_ + u)];
+  if (kept.step != step) kept = take_normal(u, v, step);
+  return kept;
 }
 
 bool Surface::normal(int u, int v, int step, Normal16& out) const noexcept {
-  IntPoint n;
-  if (!raw_normal(u, v, step, n)) return false;
+  const KeptNormal n = raw_normal(u, v, step);
+  if (n.exists == 0) return false;
   const auto square = static_cast<std::uint32_t>(n.x * n.x + n.y * n.y + n.z * n.z);
   const auto norm = static_cast<std::int32_t>(integer_sqrt(square));
   if (norm == 0) return false;
@@ -175,8 +189,8 @@ bool Surface::normal(int u, int v, int step, Normal16& out) const noexcept {
 }
 
 bool Surface::faces(int u, int v, int step, const IntPoint& direction) const noexcept {
-  IntPoint n;
-  if (!raw_normal(u, v, step, n)) return true;
+  const KeptNormal n = raw_normal(u, v, step);
+  if (n.exists == 0) return true;
   // Products below 2^14 · 2^14.1, their sum |n| · cos · 2^14 below 2^30.
   const std::int32_t dot = n.x * direction.x + n.y * direction.y + n.z * direction.z;
   if (dot <= 0) return false;

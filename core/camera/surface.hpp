@@ -37,6 +37,7 @@ struct PixelSpan {
   std::int32_t span = 0;  ///< pixels · 1/8 mm
 };
 
+/// Looks at normals are kept: a surface is one thread's.
 /// Owns a depth picture of the camera's size, 16 bits a pixel at 1/8 mm, 0 = no reading. Only the window of
 /// the last build() holds data; everything outside it reads as "no reading". What a pixel of the window holds
 /// does not depend on the window.
@@ -108,8 +109,15 @@ class Surface {
   static constexpr std::size_t kRing = 3;     // rows of the stages before the last
   static_assert(kMargin >= kRowSlack && kMargin >= kMostStep);
 
-  /// Normal of any length, components below 2^14. False when there is none.
-  [[nodiscard]] bool raw_normal(int u, int v, int step, IntPoint& out) const noexcept;
+  /// A normal of any length, components below 2^14, kept once it was asked for: the same pixels are looked at
+  /// again and again in a frame.
+  struct KeptNormal {
+    std::int16_t x = 0, y = 0, z = 0;
+    std::uint8_t step = 0;     ///< that it was taken with; 0: not yet
+    std::uint8_t exists = 0;
+  };
+  [[nodiscard]] const KeptNormal& raw_normal(int u, int v, int step) const noexcept;
+  [[nodiscard]] KeptNormal take_normal(int u, int v, int step) const noexcept;
   [[nodiscard]] const std::uint16_t* at(int u, int v) const noexcept {
     return picture_ + static_cast<std::ptrdiff_t>(v) * static_cast<std::ptrdiff_t>(stride_) + u;
   }
@@ -124,6 +132,7 @@ class Surface {
   std::int32_t focal_x_ = 0, focal_y_ = 0;  // Q8
   std::span<std::uint16_t> smooth_;         // the picture and its margins
   std::uint16_t* picture_ = nullptr;        // pixel (0, 0) in it
+  std::span<KeptNormal> normals_;           // of the picture, row by row: a cache
   std::span<std::uint16_t> converted_;      // kRing rows, then one of zeros
   std::span<std::uint16_t> cleaned_;        // kRing rows
   std::span<std::int16_t> ray_x_, ray_y_;   // (u - cx) / fx, (v - cy) / fy in Q14

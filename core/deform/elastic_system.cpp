@@ -13,6 +13,33 @@ void add_end(double stretch, double bend, const Vector3& arm, const Vector3& pul
   force.tail<3>() += pull;
 }
 
+/// What a link answers to the motions of its ends. In plain numbers: this is the innermost loop.
+inline void multiply_link(const ElasticLink& link, const Vector6& at_a, const Vector6& at_b, Vector6& out_a,
+                          Vector6& out_b) noexcept {
+  const double *xa = at_a.data(), *xb = at_b.data(), *ra = link.arm_a.data(), *rb = link.arm_b.data();
+  const double pull_x =
+      link.stretch * (xa[3] + xa[1] * ra[2] - xa[2] * ra[1] - xb[3] - xb[1] * rb[2] + xb[2] * rb[1]);
+  const double pull_y =
+      link.stretch * (xa[4] + xa[2] * ra[0] - xa[0] * ra[2] - xb[4] - xb[2] * rb[0] + xb[0] * rb[2]);
+  const double pull_z =
+      link.stretch * (xa[5] + xa[0] * ra[1] - xa[1] * ra[0] - xb[5] - xb[0] * rb[1] + xb[1] * rb[0]);
+  const double twist_x = link.bend * (xa[0] - xb[0]), twist_y = link.bend * (xa[1] - xb[1]),
+               twist_z = link.bend * (xa[2] - xb[2]);
+  double *ya = out_a.data(), *yb = out_b.data();
+  ya[0] += ra[1] * pull_z - ra[2] * pull_y + twist_x;
+  ya[1] += ra[2] * pull_x - ra[0] * pull_z + twist_y;
+  ya[2] += ra[0] * pull_y - ra[1] * pull_x + twist_z;
+  ya[3] += pull_x;
+  ya[4] += pull_y;
+  ya[5] += pull_z;
+  yb[0] -= rb[1] * pull_z - rb[2] * pull_y + twist_x;
+  yb[1] -= rb[2] * pull_x - rb[0] * pull_z + twist_y;
+  yb[2] -= rb[0] * pull_y - rb[1] * pull_x + twist_z;
+  yb[3] -= pull_x;
+  yb[4] -= pull_y;
+  yb[5] -= pull_z;
+}
+
 }  // namespace
 
 void ElasticSystem::clear(std::size_t patches) noexcept {
@@ -42,15 +69,7 @@ void ElasticSystem::multiply(const Vectors& x, Vectors& y) const noexcept {
   for (std::size_t m = 0; m < moving_count_; ++m) y[moving_[m]] = own_[moving_[m]] * x[moving_[m]];
   for (std::size_t l = 0; l < links_count_; ++l) {
     const ElasticLink& link = links_[l];
-    const Vector6 &xa = x[link.a], &xb = x[link.b];
-    const Vector3 wa = xa.head<3>(), wb = xb.head<3>();
-    const Vector3 gap =
-        Vector3(xa.tail<3>()) + wa.cross(link.arm_a) - Vector3(xb.tail<3>()) - wb.cross(link.arm_b);
-    const Vector3 pull = link.stretch * gap, twist = link.bend * (wa - wb);
-    y[link.a].head<3>() += link.arm_a.cross(pull) + twist;
-    y[link.a].tail<3>() += pull;
-    y[link.b].head<3>() -= link.arm_b.cross(pull) + twist;
-    y[link.b].tail<3>() -= pull;
+    multiply_link(link, x[link.a], x[link.b], y[link.a], y[link.b]);
   }
 }
 
@@ -61,7 +80,7 @@ double ElasticSystem::dot(const Vectors& x, const Vectors& y) const noexcept {
   return sum;
 }
 
-bool ElasticSystem::solve(int iterations) noexcept {
+bool ElasticSystem::solve(int iterations, double enough) noexcept {
   moving_count_ = 0;
   for (std::size_t p = 0; p < count_; ++p)
     if (!held_[p]) moving_[moving_count_++] = static_cast<std::uint8_t>(p);
@@ -77,7 +96,7 @@ bool ElasticSystem::solve(int iterations) noexcept {
   for (int iteration = 0; iteration < iterations; ++iteration) {
     multiply(direction_, scratch_);
     const double curvature = dot(direction_, scratch_);
-    if (!(curvature > 1e-30) || !(along > 1e-30)) break;
+    if (!(curvature > 1e-30) || !(along > enough)) break;
     const double step = along / curvature;
     for (std::size_t m = 0; m < moving_count_; ++m) {
       const std::size_t p = moving_[m];

@@ -19,7 +19,7 @@ struct ElasticLink {
   Vector3 arm_a, arm_b;  ///< from the patches' centres to where each puts the point, camera frame, metres
 };
 
-/// Solved by conjugate gradients with a fixed number of iterations, preconditioned by the 6×6 blocks of the
+/// Solved by conjugate gradients with a bounded number of iterations, preconditioned by the 6×6 blocks of the
 /// diagonal: a bounded number of operations in a fixed order.
 class ElasticSystem {
  public:
@@ -33,8 +33,10 @@ class ElasticSystem {
   /// `gap`: from where b puts the shared point to where a does; `turn`: rotation vector from b to a.
   void add_link(const ElasticLink& link, const Vector3& gap, const Vector3& turn) noexcept;
 
-  /// The motions of all patches about their centres. False when the system is singular.
-  [[nodiscard]] bool solve(int iterations) noexcept;
+  /// The motions of all patches about their centres. Ends after `iterations`, or when what is left unbalanced
+  /// is worth no more than `enough`, in weighted readings times metres squared. False when the system is
+  /// singular.
+  [[nodiscard]] bool solve(int iterations, double enough = 1e-30) noexcept;
   [[nodiscard]] const Vector6& motion(std::size_t p) const noexcept { return x_[p]; }
 
  private:

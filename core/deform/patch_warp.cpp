@@ -154,6 +154,10 @@ ChosenPatches moving_patches(const PatchTables& patches, const ChosenPatches& as
   return moving;
 }
 
+/// Share of a reading's noise by which every freedom of every patch may still be off its balance: the noise
+/// that is left in a patch after a dozen smoothed readings is twice that.
+constexpr double kNothing = 0.05;
+
 /// One balance of readings, anchors and springs. False when there is none.
 bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points,
              const ChosenPatches& moving, const Material& material, double limit, int iterations,
@@ -161,23 +165,44 @@ bool balance(const PatchLook& look, const RegionSet& regions, const PointState& 
   const std::size_t count = look.patches.count;
   gather_readings(look, points, moving, warp);
   warp.system.clear(count);
+  std::size_t moving_count = 0;
   for (std::size_t p = 0; p < count; ++p) {
     if (!moving[p]) {
       warp.system.hold(p);
       continue;
     }
+    ++moving_count;
     add_readings(warp.moments[p], warp.system.own(p), warp.system.force(p));
     warp.seen[p] = static_cast<double>(warp.moments[p].weight) / 256;
     add_anchor(look.patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
   }
   add_borders(look.patches, material, warp);
-  if (!warp.system.solve(iterations)) return false;
+  const double still = kNothing * material.noise;
+  if (!warp.system.solve(iterations, 6 * still * still * static_cast<double>(moving_count))) return false;
   for (std::size_t p = 0; p < count; ++p) {
     const Vector6& x = warp.system.motion(p);
     if (!moving[p] || !(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
     warp.pose[p] = motion_about(x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
   }
   return true;
+}
+
+/// Which patches stand, with all their neighbours, exactly where one region puts them: no point of theirs is
+/// off it.
+void find_rigid(const PatchTables& patches, const RegionSet& regions, PatchWarp& warp) noexcept {
+  const auto stands = [&](std::size_t p) {
+    const RigidTransform& region = regions[static_cast<std::size_t>(warp.home[p])].pose;
+    return warp.pose[p].rotation == region.rotation && warp.pose[p].translation == region.translation;
+  };
+  const bool complete = patches.border_count < kMaxBorders;
+  for (std::size_t p = 0; p < patches.count; ++p) warp.rigid[p] = complete && stands(p);
+  const std::array<bool, kMaxPatches> alone = warp.rigid;
+  for (std::size_t k = 0; k < patches.border_count; ++k) {
+    const PatchBorder& border = patches.borders[k];
+    const bool one = warp.home[border.a] == warp.home[border.b];
+    if (!one || !alone[border.b]) warp.rigid[border.a] = false;
+    if (!one || !alone[border.a]) warp.rigid[border.b] = false;
+  }
 }
 
 }  // namespace
@@ -213,6 +238,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
     if (moving[p])
       warp.pose[p] =
           steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius, kNoiseOfPose * noise);
+  find_rigid(patches, regions, warp);
   place_patches(model, patches, warp);
 }
 

@@ -42,15 +42,15 @@ struct Symmetric6 {
   }
 
   [[nodiscard]] Vector6 operator*(const Vector6& x) const noexcept {
-    Vector6 y = Vector6::Zero();
-    std::size_t k = 0;
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < row; ++column, ++k) {
-        y[row] += a[k] * x[column];
-        y[column] += a[k] * x[row];
-      }
-      y[row] += a[k++] * x[row];
-    }
+    Vector6 y;
+    const double* m = a.data();
+    const double x0 = x[0], x1 = x[1], x2 = x[2], x3 = x[3], x4 = x[4], x5 = x[5];
+    y[0] = m[0] * x0 + m[1] * x1 + m[3] * x2 + m[6] * x3 + m[10] * x4 + m[15] * x5;
+    y[1] = m[1] * x0 + m[2] * x1 + m[4] * x2 + m[7] * x3 + m[11] * x4 + m[16] * x5;
+    y[2] = m[3] * x0 + m[4] * x1 + m[5] * x2 + m[8] * x3 + m[12] * x4 + m[17] * x5;
+    y[3] = m[6] * x0 + m[7] * x1 + m[8] * x2 + m[9] * x3 + m[13] * x4 + m[18] * x5;
+    y[4] = m[10] * x0 + m[11] * x1 + m[12] * x2 + m[13] * x3 + m[14] * x4 + m[19] * x5;
+    y[5] = m[15] * x0 + m[16] * x1 + m[17] * x2 + m[18] * x3 + m[19] * x4 + m[20] * x5;
     return y;
   }
 };

@@ -99,10 +99,16 @@ std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
 }
 
 Verdict examine(const LabelContext& context, const Sighting& sighting, const FixedPose& home,
-                const Sighting::Look& at_home, std::size_t i) noexcept {
+                std::int8_t region, const Sighting::Look& at_home, std::size_t i) noexcept {
   Verdict verdict;
   verdict.look = at_home;
   verdict.rigid = home.point(context.model.x[i], context.model.y[i], context.model.z[i]);
+  if (const std::size_t p = context.patches.patch_of[i];
+      context.warp.rigid[p] && context.warp.home[p] == region) {
+    verdict.warped = verdict.rigid;
+    verdict.off = at_home.sight == Sight::in_front;
+    return verdict;
+  }
   verdict.warped = warped_point(context.model, context.patches, context.warp, i);
   verdict.distance = distance_of(verdict.rigid, verdict.warped);
   const bool apart = verdict.distance > context.tolerance.deformed(verdict.rigid.z);
@@ -161,7 +167,7 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
     if (alive > 1 && look.sight == Sight::none)
       carry_where_allowed(model, regions, sighting, poses, points, i);
     const Verdict verdict =
-        examine(context, sighting, poses[static_cast<std::size_t>(points.home[i])], look, i);
+        examine(context, sighting, poses[static_cast<std::size_t>(points.home[i])], points.home[i], look, i);
     const Sight sight = verdict.look.sight;
     counts.facing += verdict.look.facing ? 1 : 0;
     counts.in_front += sight == Sight::in_front ? 1 : 0;
