@@ -2,9 +2,12 @@
 
 #include "core/track/aside.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/contour.hpp"
 #include "core/track/plane_equations.hpp"
 
+#include <cstdlib>
 namespace pliant {
+static const double cw_ = std::getenv("CW") ? std::atof(std::getenv("CW")) : 1.0;
 
 namespace {
 
@@ -15,6 +18,14 @@ void add_aside(const PatchLook& look, int u, int v, const IntPoint& at, const In
   if (find_aside(look.surface, reach, u, v, at, n, aside))
     add_plane_row(moments, at, aside.direction, aside.distance * 16,
                   tukey_weight(aside.distance, look.gates.inward), centre);
+}
+
+void add_contour(const PatchLook& look, const IntPoint& at, const IntPoint& n, const IntPoint& centre,
+                 PlaneMoments& moments) noexcept {
+  std::int32_t distance = 0;
+  const std::int32_t reach = look.gates.inward;
+  if (find_contour(look.surface, look.projector, {reach, reach}, at, n, distance))
+    add_plane_row(moments, at, n, distance * 16, static_cast<std::int32_t>(cw_ * tukey_weight(distance, reach)), centre);
 }
 
 /// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its
@@ -30,7 +41,10 @@ void add_aside(const PatchLook& look, int u, int v, const IntPoint& at, const In
     const FixedPose& pose = warp.fixed[p];
     const IntPoint n = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
     const IntPoint at = pose.point(model.x[i], model.y[i], model.z[i]);
-    if (!faces_camera(at, n, kCos75)) continue;
+    if (!faces_camera(at, n, kCos75)) {
+      if (on_rim(at, n)) add_contour(look, at, n, warp.centre[p], warp.moments[p]);
+      continue;
+    }
     int u = 0, v = 0;
     if (!look.projector.project(at, u, v)) continue;
     const std::uint16_t z8 = look.surface.depth_at(u, v);

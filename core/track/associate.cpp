@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "core/track/aside.hpp"
+#include "core/track/contour.hpp"
 
 namespace pliant {
 
@@ -42,7 +43,12 @@ Correspondence correspondence(const IntPoint& p, const IntPoint& n, std::size_t 
     if (points.evidence[i] >= kEvidenceDeformed) continue;
     const IntPoint n = plan.poses[k].direction(model.nx[i], model.ny[i], model.nz[i]);
     const IntPoint p = plan.poses[k].point(model.x[i], model.y[i], model.z[i]);
-    if (!faces_camera(p, n, kCos75)) continue;
+    if (!faces_camera(p, n, kCos75)) {
+      std::int32_t distance = 0;
+      if (k != 0 && on_rim(p, n) && find_contour(surface, projector, {plan.gate, plan.gate}, p, n, distance))
+        points.correspondences[count++] = correspondence(p, n, i, distance * 16, k);
+      continue;
+    }
     int u = 0, v = 0;
     if (!projector.project(p, u, v)) continue;
     const std::uint16_t z8 = surface.depth_at(u, v);

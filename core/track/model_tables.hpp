@@ -79,6 +79,10 @@ class Projector {
   [[nodiscard]] int pixels(std::int32_t length, std::int32_t z) const noexcept {
     return static_cast<int>(static_cast<std::int64_t>(length) * fx_ / (8 * static_cast<std::int64_t>(z)) + 1);
   }
+  /// The length (1/16 mm) that `steps` 1/256 pixels span at depth z (1/16 mm).
+  [[nodiscard]] std::int64_t length(std::int32_t steps, std::int32_t z) const noexcept {
+    return static_cast<std::int64_t>(steps) * z / (static_cast<std::int64_t>(fx_) * 32);
+  }
 
  private:
   static constexpr std::int32_t kFarthest = 128000;  // 8 m

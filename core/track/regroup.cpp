@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "core/track/compare_poses.hpp"
+
 namespace pliant {
 
 namespace {
@@ -79,32 +81,6 @@ bool switch_patches(const RegroupContext& context, RegroupState& state, const Re
   return any;
 }
 
-/// How well two poses explain what is seen of some points: mean distance from the readings along the normal,
-/// no more than the inlier limit each, as a share of that limit.
-struct Comparison {
-  double own = 1, other = 1;
-};
-
-/// Compares on the points of region `k`, of `patches` only if given. What slides along the surface costs
-/// nothing: only what the readings tell apart does.
-Comparison compare(const RegroupContext& context, const PointState& points, std::int8_t k,
-                   const PatchSet* patches, const RigidTransform& own, const RigidTransform& other) noexcept {
-  const FixedPose own_pose(own, context.model.centre), other_pose(other, context.model.centre);
-  const std::int32_t limit = context.tolerance.deformed(depth_of(own, context.model.centre));
-  std::int64_t own_sum = 0, other_sum = 0, count = 0;
-  for (std::size_t i = 0; i < context.model.size; ++i) {
-    if (points.home[i] != k || (patches != nullptr && !patches->has(context.patches.patch_of[i]))) continue;
-    const Sighting::Look a = context.sighting.look(i, own_pose), b = context.sighting.look(i, other_pose);
-    if (a.sight != Sight::agrees && b.sight != Sight::agrees) continue;
-    own_sum += a.sight == Sight::agrees ? std::min(std::abs(a.residual), limit) : limit;
-    other_sum += b.sight == Sight::agrees ? std::min(std::abs(b.residual), limit) : limit;
-    ++count;
-  }
-  if (count == 0) return {};
-  const double scale = 1.0 / (static_cast<double>(count) * limit);
-  return {static_cast<double>(own_sum) * scale, static_cast<double>(other_sum) * scale};
-}
-
 bool adjacent(const RegroupContext& context, std::int8_t a, std::int8_t b) noexcept {
   for (std::size_t k = 0; k < context.patches.border_count; ++k) {
     const std::int8_t x = context.warp.home[context.patches.borders[k].a],
@@ -149,9 +125,9 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
         continue;
       }
       const bool a_larger = regions[a].members >= regions[b].members;
-      const Comparison on_smaller = compare(context, points, a_larger ? ib : ia, nullptr,
-                                            regions[a_larger ? b : a].pose, regions[a_larger ? a : b].pose);
-      const bool fits = on_smaller.other - on_smaller.own <= kAsOne;
+      const bool fits =
+          worse_by(context.model, context.patches, context.sighting, points, {a_larger ? ib : ia, nullptr},
+                   regions[a_larger ? b : a].pose, regions[a_larger ? a : b].pose) <= kAsOne;
       alike = fits ? static_cast<std::uint8_t>(alike + 1) : std::uint8_t{0};
       if (alike < settings.merge_after) continue;
       alike = 0;
@@ -253,8 +229,8 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
     RigidPart part;
     const auto shows_two = [&] {
       if (!find_rigid_part(context.patches, context.warp, id, region.pose, search, part)) return false;
-      const Comparison on_part = compare(context, points, id, &part.patches, part.pose, region.pose);
-      return on_part.other - on_part.own >= kAsTwo;
+      return worse_by(context.model, context.patches, context.sighting, points, {id, &part.patches},
+                      part.pose, region.pose) >= kAsTwo;
     };
     if (!shows_two()) {
       state.suspected[k] = 0;

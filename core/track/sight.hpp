@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/track/associate.hpp"
+#include "core/track/contour.hpp"
 #include "core/track/track_state.hpp"
 
 namespace pliant {
@@ -45,6 +46,16 @@ class Sighting {
     const std::uint16_t z8 = surface_.depth(u, v);
     return z8 != 0 && 2 * z8 - p.z > 2 * tolerance_.deformed(p.z);
   }
+  /// How far the outline lies from the point under `pose`, 1/16 mm, at most `reach`; false where the point
+  /// does not lie on the outline, or none is seen.
+  [[nodiscard]] bool from_contour(std::size_t i, const FixedPose& pose, std::int32_t reach,
+                                  std::int32_t& distance) const noexcept {
+    const IntPoint point = pose.point(model_.x[i], model_.y[i], model_.z[i]),
+                   normal = pose.direction(model_.nx[i], model_.ny[i], model_.nz[i]);
+    return on_rim(point, normal) &&
+           find_contour(surface_, projector_, {reach, reach}, point, normal, distance);
+  }
+  [[nodiscard]] const Tolerance& tolerance() const noexcept { return tolerance_; }
 
  private:
   bool try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept;

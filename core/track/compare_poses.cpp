@@ -1,0 +1,54 @@
+#include "core/track/compare_poses.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace pliant {
+
+namespace {
+
+/// An outline of fewer points says nothing: each is known to a pixel.
+constexpr std::int64_t kFewestOnRim = 12;
+
+/// Sums over points of how far the two poses put them from what is seen.
+struct Sums {
+  std::int64_t own = 0, other = 0, count = 0;
+
+  void add(std::int32_t a, std::int32_t b) noexcept {
+    own += a;
+    other += b;
+    ++count;
+  }
+  [[nodiscard]] double gap(std::int32_t limit) const noexcept {
+    return count > 0 ? static_cast<double>(other - own) / (static_cast<double>(count) * limit) : 0;
+  }
+};
+
+}  // namespace
+
+double worse_by(const ModelTables& model, const PatchTables& patches, const Sighting& sighting,
+                const PointState& points, const AskedPoints& asked, const RigidTransform& own,
+                const RigidTransform& other) noexcept {
+  const FixedPose own_pose(own, model.centre), other_pose(other, model.centre);
+  const std::int32_t limit = sighting.tolerance().deformed(depth_of(own, model.centre));
+  Sums surface, rim;
+  for (std::size_t i = 0; i < model.size; ++i) {
+    if (points.home[i] != asked.region ||
+        (asked.patches != nullptr && !asked.patches->has(patches.patch_of[i])))
+      continue;
+    std::int32_t at_own = 0, at_other = 0;
+    if (sighting.from_contour(i, own_pose, 4 * limit, at_own) &&
+        sighting.from_contour(i, other_pose, 4 * limit, at_other)) {
+      rim.add(std::min(std::abs(at_own), limit), std::min(std::abs(at_other), limit));
+      continue;
+    }
+    const Sighting::Look a = sighting.look(i, own_pose), b = sighting.look(i, other_pose);
+    if (a.sight != Sight::agrees && b.sight != Sight::agrees) continue;
+    surface.add(a.sight == Sight::agrees ? std::min(std::abs(a.residual), limit) : limit,
+                b.sight == Sight::agrees ? std::min(std::abs(b.residual), limit) : limit);
+  }
+  const double on_surface = surface.gap(limit);
+  return rim.count >= kFewestOnRim ? std::max(on_surface, rim.gap(limit)) : on_surface;
+}
+
+}  // namespace pliant
