@@ -94,7 +94,7 @@ void align_regions(TrackerState& s) noexcept {
   round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
   round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
   for (int i = 0; i < 2; ++i) round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier / 2);
-  hold_steady(s.tables, s.surface, s.regions);
+  hold_steady(s.tables, s.surface, s.points.frames, s.regions);
   for (TrackedRegion& region : s.regions)
     if (region.alive) region.motion = region.pose * region.last_pose.inverse();
 }

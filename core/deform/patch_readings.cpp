@@ -5,9 +5,7 @@
 #include "core/track/contour.hpp"
 #include "core/track/plane_equations.hpp"
 
-#include <cstdlib>
 namespace pliant {
-static const double cw_ = std::getenv("CW") ? std::atof(std::getenv("CW")) : 1.0;
 
 namespace {
 
@@ -25,7 +23,7 @@ void add_contour(const PatchLook& look, const IntPoint& at, const IntPoint& n, c
   std::int32_t distance = 0;
   const std::int32_t reach = look.gates.inward;
   if (find_contour(look.surface, look.projector, {reach, reach}, at, n, distance))
-    add_plane_row(moments, at, n, distance * 16, static_cast<std::int32_t>(cw_ * tukey_weight(distance, reach)), centre);
+    add_plane_row(moments, at, n, distance * 16, tukey_weight(distance, reach), centre);
 }
 
 /// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its

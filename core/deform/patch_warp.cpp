@@ -8,9 +8,7 @@
 #include "core/track/part_search.hpp"
 #include "core/track/steady.hpp"
 
-#include <cstdlib>
 namespace pliant {
-inline double knob(const char* n, double d){ const char* e=std::getenv(n); return e?std::atof(e):d; }
 
 namespace {
 
@@ -96,9 +94,9 @@ constexpr double kByChance = 1.4;
 /// Nearer than this share of that, a patch is where its region is.
 constexpr double kAtHome = 0.25;
 /// By chance, the six freedoms of a patch lower the sum of its squared residuals by six times σ² where edges,
-/// which are not smoothed, hold it; neighbouring readings share their noise, hence twice. What they lower by
-/// more pulls a patch away.
-const double kByChanceFreely = knob("FREELY",24);
+/// which are not smoothed, hold it; smoothing makes neighbouring readings share their noise, so that a
+/// patch's few are worth a fourth: hence four times. What they lower by more pulls a patch away.
+constexpr double kByChanceFreely = 24;
 
 /// Patches that the readings put as well where their region is go back there: what slid along the surface
 /// unnoticed does not add up over the frames. Not so beside a patch that must be elsewhere: what moves takes
@@ -141,7 +139,7 @@ ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const
 
 /// Springs carry what moves no farther than this many patches into what stands where its region is: at each
 /// the anchors take the larger part.
-const int kReachOfSprings = static_cast<int>(knob("REACH",3));
+constexpr int kReachOfSprings = 3;
 
 /// The patches that may move off their regions: those that are off them, and what their springs reach.
 ChosenPatches moving_patches(const PatchTables& patches, const ChosenPatches& astray) noexcept {
@@ -158,7 +156,7 @@ ChosenPatches moving_patches(const PatchTables& patches, const ChosenPatches& as
 
 /// Share of a reading's noise by which every freedom of every patch may still be off its balance: the noise
 /// that is left in a patch after a dozen smoothed readings is twice that.
-const double kNothing = knob("NOTHING",0.05);
+constexpr double kNothing = 0.05;
 
 /// One balance of readings, anchors and springs. False when there is none.
 bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points,
@@ -229,7 +227,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
   const std::array<RigidTransform, kMaxPatches> before = warp.pose;
   const ChosenPatches moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
-  for (int round = 0; round < static_cast<int>(knob("ROUNDS",settings.rounds)); ++round) {
+  for (int round = 0; round < settings.rounds; ++round) {
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
     if (!balance(look, regions, points, moving, material, limit, settings.iterations, warp)) break;
     // the nearer the patches are, the less a reading far off has to do with them
@@ -238,8 +236,8 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   }
   for (std::size_t p = 0; p < patches.count; ++p)
     if (moving[p])
-      warp.pose[p] =
-          steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius, kNoiseOfPose * noise);
+      warp.pose[p] = steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius,
+                              kNoiseOfPose * noise, least_share(points.frames));
   find_rigid(patches, regions, warp);
   place_patches(model, patches, warp);
 }

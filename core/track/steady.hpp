@@ -8,14 +8,22 @@ namespace pliant {
 
 /// The part of the motion from `before` to `after` that noise does not explain: a share s² / (s² + noise²) of
 /// it, s being how far it moves a body of radius 2 · `half_radius` about `centre` (model frame, metres) in
-/// the root mean square. Lags by less than the noise behind steady motion.
+/// the root mean square; but no less than `least`. Lags by less than the noise behind steady motion.
 [[nodiscard]] RigidTransform steadied(const RigidTransform& before, const RigidTransform& after,
-                                      const Vector3& centre, double half_radius, double noise) noexcept;
+                                      const Vector3& centre, double half_radius, double noise,
+                                      double least = 0) noexcept;
 
 /// How much of the sensor's σ is left in a pose from many readings.
 inline constexpr double kNoiseOfPose = 0.5;
 
+/// The least share of a motion that counts in the first frames after the object was taken up: as in a mean
+/// over them, since the place that it was taken up in is a coarse one. `frames` as in PointState.
+[[nodiscard]] constexpr double least_share(std::int32_t frames) noexcept {
+  return frames < 1 ? 1.0 : frames <= kMisfitFirstFrames ? 1.0 / frames : 0.0;
+}
+
 /// Steadies every region against the last frame.
-void hold_steady(const ModelTables& model, const Surface& surface, RegionSet& regions) noexcept;
+void hold_steady(const ModelTables& model, const Surface& surface, std::int32_t frames,
+                 RegionSet& regions) noexcept;
 
 }  // namespace pliant
