@@ -6,6 +6,7 @@
 #include "core/deform/radius_search.hpp"
 #include "core/track/align.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/borders.hpp"
 #include "core/track/joints.hpp"
 #include "core/track/predict.hpp"
 #include "core/track/steady.hpp"
@@ -111,10 +112,11 @@ void warp_surface(TrackerState& s) noexcept {
 
 void label_points(TrackerState& s) noexcept {
   const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
-  settle_undecided(s.tables, sighting, s.regions, s.tolerance, s.points);
-  s.counts = label(
-      {s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance, s.settings.steps.temporal_evidence},
-      s.regions, s.points);
+  const PatchSet border = border_patches(s.patches, s.points.home);
+  settle_undecided(s.tables, s.patches, border, sighting, s.regions, s.points);
+  s.counts = label({s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance, border,
+                    s.settings.steps.temporal_evidence},
+                   s.regions, s.points);
 }
 
 void regroup_outliers(TrackerState& s) noexcept {

@@ -13,6 +13,7 @@ namespace {
 /// What the kernel needs of regions and settings.
 struct Plan {
   std::array<FixedPose, limits::kMaxRegions> poses;
+  std::array<std::size_t, limits::kMaxRegions> sizes{};  // of the sampling, by region
   std::size_t size = 0;
   std::int32_t gate = 0;  // 1/16 mm, at most 8191
   PixelSpan spacing;
@@ -40,7 +41,7 @@ Correspondence correspondence(const IntPoint& p, const IntPoint& n, std::size_t 
   std::size_t count = 0;
   for (std::size_t i = 0; i < plan.size; ++i) {
     const auto k = static_cast<std::size_t>(points.home[i]);
-    if (points.evidence[i] >= kEvidenceDeformed) continue;
+    if (i >= plan.sizes[k] || points.evidence[i] >= kEvidenceDeformed) continue;
     const IntPoint n = plan.poses[k].direction(model.nx[i], model.ny[i], model.nz[i]);
     const IntPoint p = plan.poses[k].point(model.x[i], model.y[i], model.z[i]);
     if (!faces_camera(p, n, kCos75)) {
@@ -76,6 +77,10 @@ void associate(const ModelTables& model, const Surface& surface, const Projector
   for (std::size_t k = 0; k < regions.size(); ++k)
     if (regions[k].alive) plan.poses[k] = FixedPose(regions[k].pose, model.centre);
   plan.size = std::min(settings.points, model.size);
+  for (const std::int8_t home : points.home) ++plan.sizes[static_cast<std::size_t>(home)];
+  for (std::size_t& size : plan.sizes)
+    size = size <= kEnoughOfRegion ? plan.size
+                                   : std::min(plan.size, model.size * kEnoughOfRegion / size);
   plan.gate = std::min(settings.gate, 8191);
   plan.spacing = surface.pixel_span(model.spacing / kUnitsPerMetre);
   points.correspondence_count = associate_points(model, surface, projector, plan, points);

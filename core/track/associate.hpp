@@ -8,8 +8,13 @@ namespace pliant {
 /// Cosine of the steepest view that still tells something of a surface, Q14.
 inline constexpr std::int32_t kCos75 = 4240;
 
+/// Points of a region that are enough for its pose: the thousandth does not make it better than the sensor's
+/// systematic errors, a tenth of σ.
+inline constexpr std::size_t kEnoughOfRegion = 1500;
+
 struct AssociateSettings {
-  std::size_t points = 0;  ///< the first so many model points are looked at: a uniform sampling
+  std::size_t points = 0;  ///< the first so many model points are looked at: a uniform sampling;
+                           ///< of a region with more than kEnoughOfRegion points fewer, down to so many
   std::int32_t gate = 0;   ///< readings farther than this from the point are not taken, 1/16 mm
 };
 

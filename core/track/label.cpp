@@ -161,7 +161,7 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
   for (std::size_t i = 0; i < model.size; ++i) {
     Sighting::Look look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
     const std::int32_t limit = context.tolerance.deformed(look.point.z);
-    if (alive > 1 &&
+    if (alive > 1 && context.border.has(context.patches.patch_of[i]) &&
         consider_rivals(model, regions, sighting, poses, limit, look, enough_to_switch, points, i))
       look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
     if (alive > 1 && look.sight == Sight::none)

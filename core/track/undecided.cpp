@@ -31,8 +31,8 @@ Standing standing_of(const Sighting& sighting, const RegionSet& regions,
 
 }  // namespace
 
-void settle_undecided(const ModelTables& model, const Sighting& sighting, const RegionSet& regions,
-                      const Tolerance& tolerance, PointState& points) noexcept {
+void settle_undecided(const ModelTables& model, const PatchTables& patches, const PatchSet& border,
+                      const Sighting& sighting, const RegionSet& regions, PointState& points) noexcept {
   std::array<FixedPose, limits::kMaxRegions> poses;
   int alive = 0;
   for (std::size_t k = 0; k < regions.size(); ++k) {
@@ -45,10 +45,11 @@ void settle_undecided(const ModelTables& model, const Sighting& sighting, const 
   for (std::size_t i = 0; i < model.size; ++i) {
     const auto home = static_cast<std::size_t>(points.home[i]);
     points.group[i] =
-        points.sight[i] == Sight::none || points.evidence[i] >= kEvidenceDeformed
-            ? kOut
+        points.sight[i] == Sight::none || points.evidence[i] >= kEvidenceDeformed ? kOut
+        : !border.has(patches.patch_of[i])
+            ? kDecided
             : standing_of(sighting, regions, poses,
-                          tolerance.deformed(depth_of(regions[home].pose, model.centre)), home, i);
+                          sighting.tolerance().deformed(depth_of(regions[home].pose, model.centre)), home, i);
     if (points.group[i] == kDecided) points.queue[tail++] = static_cast<std::uint16_t>(i);
   }
   while (head < tail) {
