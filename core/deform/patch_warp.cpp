@@ -158,9 +158,13 @@ ChosenPatches moving_patches(const PatchTables& patches, const ChosenPatches& as
 /// that is left in a patch after a dozen smoothed readings is twice that.
 constexpr double kNothing = 0.05;
 
-/// One balance of readings, anchors and springs. False when there is none.
+/// A patch that a round moved by less than this share of the noise has come to rest for this frame.
+constexpr double kAtRest = 0.15;
+
+/// One balance of readings, anchors and springs of the patches that still move; those that came to rest do
+/// so no more. False when there is no balance.
 bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points,
-             const ChosenPatches& moving, const Material& material, double limit, int iterations,
+             ChosenPatches& moving, const Material& material, double limit, int iterations,
              PatchWarp& warp) noexcept {
   const std::size_t count = look.patches.count;
   gather_readings(look, points, moving, warp);
@@ -181,8 +185,11 @@ bool balance(const PatchLook& look, const RegionSet& regions, const PointState& 
   if (!warp.system.solve(iterations, 6 * still * still * static_cast<double>(moving_count))) return false;
   for (std::size_t p = 0; p < count; ++p) {
     const Vector6& x = warp.system.motion(p);
-    if (!moving[p] || !(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
-    warp.pose[p] = motion_about(x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
+    if (!moving[p]) continue;
+    const bool sound = x.squaredNorm() < 1.0;  // false for not-a-number
+    if (sound) warp.pose[p] = motion_about(x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
+    const double radius = 0.5 * look.patches.radius, rest = kAtRest * material.noise;
+    moving[p] = sound && x.tail<3>().squaredNorm() + x.head<3>().squaredNorm() * radius * radius > rest * rest;
   }
   return true;
 }
@@ -227,9 +234,10 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
   const std::array<RigidTransform, kMaxPatches> before = warp.pose;
   const ChosenPatches moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
+  ChosenPatches active = moving;
   for (int round = 0; round < settings.rounds; ++round) {
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
-    if (!balance(look, regions, points, moving, material, limit, settings.iterations, warp)) break;
+    if (!balance(look, regions, points, active, material, limit, settings.iterations, warp)) break;
     // the nearer the patches are, the less a reading far off has to do with them
     gates.inward = std::max(gates.inward * 3 / 4, 2 * tolerance.deformed(z));
     gates.outward = std::max(gates.outward * 3 / 4, 2 * tolerance.deformed(z));
