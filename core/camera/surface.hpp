@@ -59,12 +59,13 @@ class Surface {
   [[nodiscard]] const Window& window() const noexcept { return window_; }
   /// Smoothed depth at a pixel of the picture, 1/8 mm, 0 = none. No bounds check.
   [[nodiscard]] std::uint16_t depth_at(int u, int v) const noexcept { return *at(u, v); }
+  [[nodiscard]] bool inside(int u, int v) const noexcept {
+    return static_cast<unsigned>(u) < static_cast<unsigned>(width_) &&
+           static_cast<unsigned>(v) < static_cast<unsigned>(height_);
+  }
   /// As depth_at(), 0 outside the picture.
   [[nodiscard]] std::uint16_t depth(int u, int v) const noexcept {
-    return static_cast<unsigned>(u) < static_cast<unsigned>(width_) &&
-                   static_cast<unsigned>(v) < static_cast<unsigned>(height_)
-               ? depth_at(u, v)
-               : std::uint16_t{0};
+    return inside(u, v) ? depth_at(u, v) : std::uint16_t{0};
   }
   /// The vertex of a pixel with depth `z8` (1/8 mm); exact to half a unit plus 2^-15 of the depth.
   [[nodiscard]] IntPoint vertex(int u, int v, std::uint16_t z8) const noexcept {
@@ -113,7 +114,7 @@ class Surface {
   /// again and again in a frame.
   struct KeptNormal {
     std::int16_t x = 0, y = 0, z = 0;
-    std::uint8_t step = 0;     ///< that it was taken with; 0: not yet
+    std::uint8_t step = 0;  ///< that it was taken with; 0: not yet
     std::uint8_t exists = 0;
   };
   [[nodiscard]] const KeptNormal& raw_normal(int u, int v, int step) const noexcept;

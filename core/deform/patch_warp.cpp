@@ -163,9 +163,8 @@ constexpr double kAtRest = 0.15;
 
 /// One balance of readings, anchors and springs of the patches that still move; those that came to rest do
 /// so no more. False when there is no balance.
-bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points,
-             ChosenPatches& moving, const Material& material, double limit, int iterations,
-             PatchWarp& warp) noexcept {
+bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points, ChosenPatches& moving,
+             const Material& material, double limit, int iterations, PatchWarp& warp) noexcept {
   const std::size_t count = look.patches.count;
   gather_readings(look, points, moving, warp);
   warp.system.clear(count);
@@ -189,7 +188,8 @@ bool balance(const PatchLook& look, const RegionSet& regions, const PointState& 
     const bool sound = x.squaredNorm() < 1.0;  // false for not-a-number
     if (sound) warp.pose[p] = motion_about(x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
     const double radius = 0.5 * look.patches.radius, rest = kAtRest * material.noise;
-    moving[p] = sound && x.tail<3>().squaredNorm() + x.head<3>().squaredNorm() * radius * radius > rest * rest;
+    moving[p] =
+        sound && x.tail<3>().squaredNorm() + x.head<3>().squaredNorm() * radius * radius > rest * rest;
   }
   return true;
 }

@@ -25,7 +25,7 @@ struct PatchWarp {
   std::array<std::int8_t, kMaxPatches> home{};   ///< region of most of its points
   std::array<double, kMaxPatches> seen{};        ///< weighted readings of this frame
   std::array<bool, kMaxPatches> held{};          ///< is in this frame where its region puts it
-  std::array<bool, kMaxPatches> rigid{};         ///< it and its neighbours are exactly where one region puts them
+  std::array<bool, kMaxPatches> rigid{};  ///< it and its neighbours are exactly where one region puts them
 
   // scratch
   std::array<PlaneMoments, kMaxPatches> moments;

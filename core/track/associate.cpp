@@ -79,8 +79,7 @@ void associate(const ModelTables& model, const Surface& surface, const Projector
   plan.size = std::min(settings.points, model.size);
   for (const std::int8_t home : points.home) ++plan.sizes[static_cast<std::size_t>(home)];
   for (std::size_t& size : plan.sizes)
-    size = size <= kEnoughOfRegion ? plan.size
-                                   : std::min(plan.size, model.size * kEnoughOfRegion / size);
+    size = size <= kEnoughOfRegion ? plan.size : std::min(plan.size, model.size * kEnoughOfRegion / size);
   plan.gate = std::min(settings.gate, 8191);
   plan.spacing = surface.pixel_span(model.spacing / kUnitsPerMetre);
   points.correspondence_count = associate_points(model, surface, projector, plan, points);

@@ -7,12 +7,13 @@ namespace pliant {
 
 namespace {
 
-/// An outline of fewer points says nothing: each is known to a pixel.
-constexpr std::int64_t kFewestOnRim = 12;
-
 /// So many points, a uniform sampling, tell two motions apart as well as all: their mean is known to a
 /// twentieth of a reading's noise.
 constexpr std::int64_t kEnough = 400;
+
+/// An outline of fewer points says nothing: a motion with six freedoms that was fitted to so few fits better
+/// by chance.
+constexpr std::int64_t kFewestOnRim = 16;
 
 /// Sums over points of how far the two poses put them from what is seen.
 struct Sums {
@@ -35,15 +36,20 @@ double worse_by(const ModelTables& model, const PatchTables& patches, const Sigh
                 const RigidTransform& other) noexcept {
   const FixedPose own_pose(own, model.centre), other_pose(other, model.centre);
   const std::int32_t limit = sighting.tolerance().deformed(depth_of(own, model.centre));
+  const std::int32_t pixel = sighting.pixel(depth_of(own, model.centre));
+  // the outline is known to a pixel: what lies nearer lies on it
+  const auto off_rim = [&](std::int32_t distance) {
+    return std::clamp(std::abs(distance) - pixel, 0, limit);
+  };
   Sums surface, rim;
   for (std::size_t i = 0; i < model.size && surface.count < kEnough; ++i) {
     if (points.home[i] != asked.region ||
         (asked.patches != nullptr && !asked.patches->has(patches.patch_of[i])))
       continue;
     std::int32_t at_own = 0, at_other = 0;
-    if (sighting.from_contour(i, own_pose, 4 * limit, at_own) &&
+    if (asked.outline && sighting.from_contour(i, own_pose, 4 * limit, at_own) &&
         sighting.from_contour(i, other_pose, 4 * limit, at_other)) {
-      rim.add(std::min(std::abs(at_own), limit), std::min(std::abs(at_other), limit));
+      rim.add(off_rim(at_own), off_rim(at_other));
       continue;
     }
     const Sighting::Look a = sighting.look(i, own_pose), b = sighting.look(i, other_pose);

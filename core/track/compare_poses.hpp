@@ -11,13 +11,14 @@ namespace pliant {
 struct AskedPoints {
   std::int8_t region = 0;
   const PatchSet* patches = nullptr;
+  bool outline = true;  ///< their outline counts, too
 };
 
 /// By how much pose `other` explains worse than `own` what is seen of the points: the mean distance from the
-/// readings along the normal, or of the outline where the surface turns away, no more than the inlier limit
-/// for each point, as a share of that limit; surface and outline apart, and the larger of both counts: a
-/// part that slides along itself shows it at its outline only. 0 where nothing is seen. What neither shows
-/// costs nothing.
+/// readings along the normal, or from the outline where the surface turns away, no more than the inlier limit
+/// for each point, as a share of that limit; surface and outline apart, and the larger of both counts: a part
+/// that slides along itself shows it at its outline only. 0 where nothing is seen; negative where `other` is
+/// better in both. What neither shows costs nothing.
 [[nodiscard]] double worse_by(const ModelTables& model, const PatchTables& patches, const Sighting& sighting,
                               const PointState& points, const AskedPoints& asked, const RigidTransform& own,
                               const RigidTransform& other) noexcept;

@@ -8,15 +8,15 @@ namespace pliant {
 namespace {
 
 constexpr std::int32_t kCos80 = 2845;  // Q14
-/// A single pixel without a reading is a gap, two in a row are the end.
-constexpr int kGap = 2;
+/// So many pixels without a reading may be a hole; more are the sensor's shadow, behind the object's edge.
+constexpr int kHole = 4;
 /// Towards the camera the object may be this many times deeper than the search reaches: it bulges there.
 constexpr std::int32_t kBulge = 3;
 
 /// At 0.4 m, a sensor's near limit, what a hand moves in a frame.
 constexpr int kMostSteps = 40;
 
-enum class Seen : std::uint8_t { object, other, nearer };
+enum class Seen : std::uint8_t { object, other, nothing, hidden };
 
 }  // namespace
 
@@ -39,38 +39,34 @@ bool find_contour(const Surface& surface, const Projector& projector, const Cont
   if (major < 4096) return false;  // towards the camera: no outline
   const std::int32_t step_u = across * 256 / major, step_v = along * 256 / major;
   const auto see = [&](int k) {
-    const std::uint16_t z8 = surface.depth(u + ((k * step_u + 128) >> 8), v + ((k * step_v + 128) >> 8));
-    if (z8 == 0) return Seen::other;
+    const int at_u = u + ((k * step_u + 128) >> 8), at_v = v + ((k * step_v + 128) >> 8);
+    if (!surface.inside(at_u, at_v)) return Seen::hidden;
+    const std::uint16_t z8 = surface.depth_at(at_u, at_v);
+    if (z8 == 0) return Seen::nothing;
     const std::int32_t gap = 2 * z8 - point.z;
-    return gap > reach.behind ? Seen::other : -gap > kBulge * reach.behind ? Seen::nearer : Seen::object;
+    return gap > reach.behind ? Seen::other : -gap > kBulge * reach.behind ? Seen::hidden : Seen::object;
   };
   // A step along the larger component is one pixel of it: along the normal, a length of 16384 / major pixels
   // of depth over focal length.
   const int most = std::clamp(projector.pixels(reach.along, point.z) * (major >> 4) >> 10, 2, kMostSteps);
   const Seen here = see(0);
-  if (here == Seen::nearer) return false;
+  if (here == Seen::hidden) return false;
+  bool any = here == Seen::object;
   int last = 0;
-  if (here == Seen::object) {
-    int missing = 0;
-    for (int k = 1;; ++k) {
-      if (k > most + kGap) return false;
-      const Seen next = see(k);
-      if (next == Seen::nearer) return false;
-      if (next == Seen::object) {
-        last = k;
-        missing = 0;
-      } else if (++missing == kGap) {
-        break;
-      }
+  for (int k = 1; here != Seen::other; ++k) {
+    const Seen next = see(k);
+    if (next == Seen::hidden || (next == Seen::object && k >= most)) return false;
+    if (next == Seen::object) {
+      last = k;
+      any = true;
+    } else if (next == Seen::other || k - last > kHole) {
+      break;
     }
-  } else {
-    int k = -1;
-    for (; k >= -most; --k) {
-      const Seen next = see(k);
-      if (next == Seen::nearer) return false;
-      if (next == Seen::object) break;
-    }
-    if (k < -most) return false;
+  }
+  for (int k = -1; !any; --k) {
+    const Seen next = see(k);
+    if (next == Seen::hidden || k < -most) return false;
+    any = next == Seen::object;
     last = k;
   }
   // half a step beyond the last reading

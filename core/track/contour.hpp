@@ -12,14 +12,14 @@ struct ContourReach {
   std::int32_t behind = 0;  ///< readings farther behind a point than this are not the object's, 1/16 mm
 };
 
-/// Does the surface at `point` with `normal` (unit, Q14) turn away from the camera just there, within 10°? Its
-/// point lies on the outline, but for 1.5 % of the surface's radius of curvature.
+/// Does the surface at `point` with `normal` (unit, Q14) turn away from the camera just there, within 10°?
+/// Its point lies on the outline, but for 1.5 % of the surface's radius of curvature.
 [[nodiscard]] bool on_rim(const IntPoint& point, const IntPoint& normal) noexcept;
 
 /// How far the outline lies from such a point along its normal, 1/16 mm, positive outwards: from the point's
 /// pixel outwards to the last reading of the object, or inwards to the first. What stands farther behind is
-/// not the object, and neither is a pixel without a reading. False when there is no outline within reach, or
-/// something nearer hides it.
+/// not the object; a few pixels without a reading are a hole in it, more are behind its edge. False when
+/// there is no outline within reach, or something nearer, or the end of the picture, hides it.
 [[nodiscard]] bool find_contour(const Surface& surface, const Projector& projector, const ContourReach& reach,
                                 const IntPoint& point, const IntPoint& normal,
                                 std::int32_t& distance) noexcept;

@@ -23,7 +23,7 @@ struct LabelContext {
   const Surface& surface;
   const Projector& projector;
   const Tolerance& tolerance;
-  PatchSet border;  ///< patches where regions meet
+  PatchSet border;          ///< patches where regions meet
   bool with_memory = true;  ///< evidence gathers over frames; else one frame decides
 };
 

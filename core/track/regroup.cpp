@@ -217,6 +217,16 @@ void split(const RegroupContext& context, std::int8_t k, std::size_t slot, const
       context.warp.home[p] = static_cast<std::int8_t>(slot);
 }
 
+/// A part of fewer points than this many of the smallest regions shows too little outline: beside a joint,
+/// what bends there would become a region of its own.
+constexpr std::uint32_t kWithOutline = 2;
+
+std::uint32_t size_of(const PatchTables& patches, const PatchSet& set) noexcept {
+  std::uint32_t size = 0;
+  for (std::size_t p = 0; p < patches.count; ++p) size += set.has(p) ? patches.sizes[p] : 0;
+  return size;
+}
+
 bool split_parts(const RegroupContext& context, const RegroupSettings& settings, std::size_t slot,
                  RegroupState& state, RegionSet& regions, PointState& points) noexcept {
   PartSearchSettings search;
@@ -229,7 +239,9 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
     RigidPart part;
     const auto shows_two = [&] {
       if (!find_rigid_part(context.patches, context.warp, id, region.pose, search, part)) return false;
-      return worse_by(context.model, context.patches, context.sighting, points, {id, &part.patches},
+      return worse_by(context.model, context.patches, context.sighting, points,
+                      {id, &part.patches,
+                       size_of(context.patches, part.patches) >= kWithOutline * settings.fewest_points},
                       part.pose, region.pose) >= kAsTwo;
     };
     if (!shows_two()) {

@@ -55,6 +55,10 @@ class Sighting {
     return on_rim(point, normal) &&
            find_contour(surface_, projector_, {reach, reach}, point, normal, distance);
   }
+  /// What a pixel spans at depth z, both 1/16 mm.
+  [[nodiscard]] std::int32_t pixel(std::int32_t z) const noexcept {
+    return static_cast<std::int32_t>(projector_.length(256, z));
+  }
   [[nodiscard]] const Tolerance& tolerance() const noexcept { return tolerance_; }
 
  private:

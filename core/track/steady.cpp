@@ -27,7 +27,8 @@ void hold_steady(const ModelTables& model, const Surface& surface, std::int32_t 
     if (!region.alive) continue;
     const double depth = (region.last_pose * model.centre).z() * kUnitsPerMetre;
     const double noise = kNoiseOfPose * surface.sigma(static_cast<std::int32_t>(depth)) / kUnitsPerMetre;
-    region.pose = steadied(region.last_pose, region.pose, model.centre, half_radius, noise, least_share(frames));
+    region.pose =
+        steadied(region.last_pose, region.pose, model.centre, half_radius, noise, least_share(frames));
   }
 }
 

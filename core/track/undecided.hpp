@@ -9,7 +9,8 @@ namespace pliant {
 /// A surface that slides along itself, such as a waist that turns, suits both regions beside a joint: its
 /// readings do not tell where one ends. Points whose readings do are decided; every other point that is seen
 /// and on its region goes over to the region of the decided point nearest along the surface graph, where that
-/// region explains it, too. Outside the patches of `border`, all are. Changes `home`; uses `group` and `queue`.
+/// region explains it, too. Outside the patches of `border`, all are. Changes `home`; uses `group` and
+/// `queue`.
 void settle_undecided(const ModelTables& model, const PatchTables& patches, const PatchSet& border,
                       const Sighting& sighting, const RegionSet& regions, PointState& points) noexcept;
 

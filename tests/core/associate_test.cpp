@@ -107,8 +107,10 @@ TEST_F(Associate, TakesEachPointUnderItsOwnRegion) {
   const std::size_t all = run(20 * kUnitsPerMillimetre);
   scene().regions[1] = scene().regions[0];
   for (std::size_t i = 0; i < 600; ++i) scene().points.home[i] = 1;
-  ASSERT_EQ(run(20 * kUnitsPerMillimetre), all);
-  for (const Correspondence& c : scene().points.correspondences.first(all))
+  // a part is held at its outline, too
+  const std::size_t with_outline = run(20 * kUnitsPerMillimetre);
+  EXPECT_GT(with_outline, all);
+  for (const Correspondence& c : scene().points.correspondences.first(with_outline))
     ASSERT_EQ(c.region, c.index < 600 ? 1 : 0);
 }
 

@@ -166,6 +166,16 @@ TEST_F(Chain, EveryIterationBringsItNearer) {
   EXPECT_LT(last - least_energy(), 1e-3 * -least_energy());
 }
 
+TEST_F(Chain, EndsWhenLittleIsLeftUnbalanced) {
+  ASSERT_TRUE(system_->solve(64));
+  const double least = energy(), all = -least;
+  ASSERT_TRUE(system_->solve(64, 1e9 * all));
+  EXPECT_EQ(energy(), 0) << "all that is unbalanced is worth less than that: nothing moves";
+  ASSERT_TRUE(system_->solve(64, 0.01 * all));
+  EXPECT_GT(energy(), least);
+  EXPECT_LT(energy() - least, 0.1 * all);
+}
+
 TEST(ElasticSystem, SaysThatNothingHoldsAPatch) {
   const auto system = std::make_unique<ElasticSystem>();
   system->clear(2);

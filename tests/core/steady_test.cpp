@@ -56,6 +56,21 @@ TEST(Steadied, HalfOfAStepAsLargeAsTheNoiseIsTaken) {
   EXPECT_NEAR(way(start(), steady(start(), shifted(start(), {0, kNoise, 0}))), 0.5 * kNoise, 1e-9);
 }
 
+TEST(Steadied, TheFirstFramesAreTakenAsInAMean) {
+  EXPECT_EQ(least_share(0), 1.0);
+  EXPECT_EQ(least_share(1), 1.0);
+  EXPECT_EQ(least_share(2), 0.5);
+  EXPECT_EQ(least_share(kMisfitFirstFrames + 1), 0.0);
+  const Vector3 step(0.1 * kNoise, 0, 0);
+  const RigidTransform moved = shifted(start(), step);
+  const auto taken = [&](double least) {
+    return way(start(), steadied(start(), moved, kCentre, kHalfRadius, kNoise, least));
+  };
+  EXPECT_NEAR(taken(1), step.norm(), 1e-12);
+  EXPECT_NEAR(taken(0.5), 0.5 * step.norm(), 1e-12);
+  EXPECT_LT(taken(0), 0.02 * step.norm());
+}
+
 TEST(Steadied, ALargeStepIsFollowed) {
   for (const double times : {10.0, 100.0}) {
     const RigidTransform moved = shifted(start(), Vector3(0, 0.6, 0.8) * (times * kNoise));

@@ -6,6 +6,7 @@
 #include "core/deform/patch_warp.hpp"
 #include "core/track/align.hpp"
 #include "core/track/associate.hpp"
+#include "core/track/borders.hpp"
 #include "core/track/label.hpp"
 #include "core/track/patches.hpp"
 #include "core/track/predict.hpp"
@@ -84,7 +85,9 @@ class TrackScene {
   }
   /// With the surface where the warp has it.
   SightCounts look_now(bool with_memory = true) {
-    return label({tables, patches, *warp, surface, projector, tolerance, with_memory}, regions, points);
+    const PatchSet border = border_patches(patches, points.home);
+    return label({tables, patches, *warp, surface, projector, tolerance, border, with_memory}, regions,
+                 points);
   }
   [[nodiscard]] Vector3 rest(std::size_t i) const {
     const Point3f& p = model.positions()[i];

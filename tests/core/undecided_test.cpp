@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/track/borders.hpp"
 #include "tests/core/track_scene.hpp"
 
 namespace pliant {
@@ -33,7 +34,8 @@ class Undecided : public ::testing::Test {
   }
   void settle() {
     const Sighting sighting(scene_.tables, scene_.surface, scene_.projector, scene_.tolerance);
-    settle_undecided(scene_.tables, sighting, scene_.regions, scene_.tolerance, scene_.points);
+    settle_undecided(scene_.tables, scene_.patches, border_patches(scene_.patches, scene_.points.home),
+                     sighting, scene_.regions, scene_.points);
   }
   std::size_t wrong(double from, double to) const {
     std::size_t count = 0;
