@@ -15,6 +15,10 @@ constexpr std::int64_t kEnough = 400;
 /// by chance.
 constexpr std::int64_t kFewestOnRim = 16;
 
+/// An outline that the better motion does not explain, to a tenth of the limit, is not the model's: it tells
+/// nothing of motions.
+constexpr std::int64_t kWellOutlined = 10;
+
 /// Sums over points of how far the two poses put them from what is seen.
 struct Sums {
   std::int64_t own = 0, other = 0, count = 0;
@@ -58,7 +62,8 @@ double worse_by(const ModelTables& model, const PatchTables& patches, const Sigh
                 b.sight == Sight::agrees ? std::min(std::abs(b.residual), limit) : limit);
   }
   const double on_surface = surface.gap(limit);
-  return rim.count >= kFewestOnRim ? std::max(on_surface, rim.gap(limit)) : on_surface;
+  const bool outlined = rim.count >= kFewestOnRim && rim.own * kWellOutlined <= rim.count * limit;
+  return outlined ? std::max(on_surface, rim.gap(limit)) : on_surface;
 }
 
 }  // namespace pliant

@@ -1,0 +1,14 @@
+// Which region is the base.
+#pragma once
+
+#include "core/track/regroup.hpp"
+
+namespace pliant {
+
+/// The base is the largest body, as it was at first: where another region is far larger than it for as many
+/// frames as two regions take to merge, that one takes its place and id, and what the base hung on hangs on
+/// it. True when it did.
+bool hand_over_base(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
+                    RegionSet& regions, PointState& points) noexcept;
+
+}  // namespace pliant
