@@ -25,6 +25,7 @@ struct PoseCandidate {
   double score = -10;
   PoseEvidence evidence;
   double seamless = 0;
+  bool settled = false;  ///< refined in full
 };
 
 /// A few distinct poses, the better one of each place.
