@@ -171,7 +171,8 @@ class FrameDetector {
   std::array<std::uint32_t, kVoted> voted_;  // the best-voted poses
   std::array<Proposal, kVoted> looks_;       // a quick look at each; scene: its place in voted_
   std::array<RigidTransform, kShortlist> shortlist_;
-  RigidTransform challenged_;  // the best pose, of which other attitudes are tried
+  RigidTransform challenge_;  // the best pose, of which other attitudes are tried
+  bool challenged_ = false;   // in this round
   Detection best_;
 };
 

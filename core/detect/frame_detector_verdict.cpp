@@ -24,6 +24,8 @@ Vector3 to_vector(const Point3f& p) noexcept {
 }
 
 constexpr std::size_t kCubeAttitudes = 24;
+constexpr std::size_t kNearAttitudes = 6;
+constexpr double kNearTurn = 0.2;  // radians: what a local frame is off
 
 /// One of the turns that take a cube to itself, the first one none.
 Matrix3 cube_attitude(std::size_t k) noexcept {
@@ -37,6 +39,13 @@ Matrix3 cube_attitude(std::size_t k) noexcept {
   turn(order[1], 1) = second;
   turn(order[2], 2) = third;
   return turn;
+}
+
+/// A turn by a little about one of the axes, one way or the other.
+Matrix3 near_attitude(std::size_t k) noexcept {
+  Vector3 turn = Vector3::Zero();
+  turn(static_cast<int>(k / 2)) = k % 2 != 0 ? -kNearTurn : kNearTurn;
+  return rotation_from_small_vector(turn);
 }
 
 }  // namespace
@@ -92,8 +101,8 @@ std::int64_t FrameDetector::slice_settle() noexcept {
   }
   if (cursor_ >= finalists_.all().size()) {
     const Detection best = finalists_.best();
-    if (best.score > 0 && !verdict_on(best).certain) {
-      challenged_ = best.pose;
+    if (!challenged_ && best.score > 0 && !verdict_on(best).certain) {
+      challenge_ = best.pose;
       phase_ = Phase::challenge;
       cursor_ = 0;
     } else {
@@ -104,11 +113,18 @@ std::int64_t FrameDetector::slice_settle() noexcept {
 }
 
 std::int64_t FrameDetector::slice_challenge() noexcept {
-  // Proposals need not have come near the attitudes in which a thing of a like shape would fit as well.
-  const Matrix3 turn = cube_attitude(++cursor_);
+  // Proposals need not have come near the attitudes in which a thing of a like shape would fit as well, and
+  // the best one may have come to rest beside the right one.
+  ++cursor_;
+  const Matrix3 turn =
+      cursor_ < kCubeAttitudes ? cube_attitude(cursor_) : near_attitude(cursor_ - kCubeAttitudes);
   const Vector3& centre = model_.centre();
-  try_pose(challenged_ * RigidTransform{turn, centre - turn * centre});
-  if (cursor_ + 1 >= kCubeAttitudes) decide();
+  try_pose(challenge_ * RigidTransform{turn, centre - turn * centre});
+  if (cursor_ + 1 >= kCubeAttitudes + kNearAttitudes) {
+    challenged_ = true;
+    phase_ = Phase::settle;
+    cursor_ = 0;
+  }
   return 600;
 }
 
@@ -140,8 +156,9 @@ void FrameDetector::decide() noexcept {
   const bool all_described = order_next_ >= order_count_;
   const bool last = round_ + 1 >= settings_.rounds || all_described;
   // The last resort is for who has looked at everything, or nearly.
-  const bool believed = verdict.convincing || ((all_described || round_ >= 2) && verdict.last_resort &&
-                                               (verdict.clear || supported(best_.pose)));
+  const bool thorough = all_described || round_ >= 2;
+  const bool believed = verdict.convincing || (thorough && verdict.clear) ||
+                        ((verdict.likely || (thorough && verdict.last_resort)) && supported(best_.pose));
   if (believed) {
     state_ = DetectState::found;
   } else if (last) {

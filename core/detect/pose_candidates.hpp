@@ -58,6 +58,7 @@ class PoseCandidates {
 struct Verdict {
   bool certain = false;      ///< nothing but the object scores so high
   bool convincing = false;   ///< as it is
+  bool likely = false;       ///< once the descriptors support it
   bool clear = false;        ///< once every keypoint was tried: noise explains it, and nothing else fits
   bool last_resort = false;  ///< once every keypoint was tried and the descriptors support it
 };
