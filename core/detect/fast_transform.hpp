@@ -19,6 +19,15 @@ struct FastTransform {
       t[i] = static_cast<float>(pose.translation(i));
     }
   }
+  /// In double precision, a rotation to single precision.
+  [[nodiscard]] RigidTransform rigid() const noexcept {
+    RigidTransform pose;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) pose.rotation(i, j) = static_cast<double>(r[3 * i + j]);
+      pose.translation(i) = static_cast<double>(t[i]);
+    }
+    return pose;
+  }
   [[nodiscard]] Point3f point(const Point3f& p) const noexcept {
     return {r[0] * p.x + r[1] * p.y + r[2] * p.z + t[0], r[3] * p.x + r[4] * p.y + r[5] * p.z + t[1],
             r[6] * p.x + r[7] * p.y + r[8] * p.z + t[2]};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/detect/spread_order.hpp"
+#include "core/detect/work.hpp"
 
 namespace pliant {
 
@@ -48,6 +49,8 @@ void FrameDetector::lay_out(Workspace& workspace, const ModelView& model, const 
   const std::size_t choices = static_cast<std::size_t>(settings_.keypoints) * settings_.matches;
   matches_ = workspace.take<Match>(choices);
   proposals_ = workspace.take<Proposal>(choices);
+  drafts_ = workspace.take<FastTransform>(settings_.thorough ? choices : 0);
+  probe_.lay_out(workspace, kEvidencePoints);
   const std::size_t keypoints = static_cast<std::size_t>(settings_.rounds) * settings_.keypoints;
   votes_.lay_out(workspace, keypoints * settings_.matches, keypoints);
 }
@@ -56,6 +59,7 @@ void FrameDetector::start(const ModelView& model, const Intrinsics& camera, cons
                           Kernels kernels) noexcept {
   model_ = model;
   snapshot_.start(camera, sensor);
+  probe_.start(model);
   matcher_.start(kernels);
   matcher_.prepare(model.descriptors().first(settings_.model_keypoints));
   // Ten points across the support's radius tell its shape; more cost time only.
@@ -82,7 +86,7 @@ void FrameDetector::begin(const Surface& surface) noexcept {
   finalists_.clear();
   votes_.clear();
   keypoints_used_ = 0;
-  cost_ = 0;
+  work_ = 0;
   best_ = Detection();
   state_ = DetectState::working;
   ++searches_;
@@ -99,7 +103,6 @@ DetectState FrameDetector::step(std::int64_t budget) noexcept {
   while (state_ == DetectState::working) {
     const std::int64_t took = slice();
     budget -= took;
-    cost_ += took;
     if (budget <= 0) break;
   }
   return state_;
@@ -117,6 +120,8 @@ std::int64_t FrameDetector::slice() noexcept {
       return slice_match();
     case Phase::propose:
       return slice_propose();
+    case Phase::narrow:
+      return slice_narrow();
     case Phase::vote:
       return slice_vote();
     case Phase::look:
@@ -137,6 +142,7 @@ std::int64_t FrameDetector::slice_normals() noexcept {
   // Wide enough that σ of the depth tilts the plane by less than a few degrees, narrow against the support.
   const double metres = std::max(leaf_, 0.2 * model_.header().support_radius);
   snapshot_.compute_normals(first, first + kRows, metres);
+  work_ += static_cast<std::uint64_t>(snapshot_.lattice_width()) * kRows * work::kLattice;
   cursor_ += kRows;
   if (first + kRows >= snapshot_.lattice_height()) {
     phase_ = Phase::sample;
@@ -190,6 +196,7 @@ std::int64_t FrameDetector::slice_sample() noexcept {
 
 void FrameDetector::begin_round() noexcept {
   phase_ = Phase::describe;
+  challenged_ = false;
   cursor_ = 0;
   key_count_ = 0;
 }
@@ -199,6 +206,7 @@ std::int64_t FrameDetector::slice_describe() noexcept {
   const OrientedPoints cloud = {points_.first(point_count_), normals_.first(point_count_)};
   for (std::size_t k = 0; k < kKeys && key_count_ < settings_.keypoints && order_next_ < order_count_; ++k) {
     const std::uint32_t i = order_[order_next_++];
+    work_ += work::kPictureDescriptor;
     float lean = 0;
     if (!describer_.describe(cloud, grid_, i, model_.header().support_radius, descriptors_[key_count_],
                              frames_[key_count_], &lean) ||
@@ -223,6 +231,7 @@ std::int64_t FrameDetector::slice_match() noexcept {
     proposals_[k].scene = static_cast<std::uint16_t>(k / settings_.matches);
     proposals_[k].model = matches_[k].model;
   }
+  work_ += group * settings_.model_keypoints * work::kComparison;
   cursor_ += group;
   if (cursor_ >= key_count_) {
     phase_ = Phase::propose;

@@ -13,10 +13,13 @@
 #include "core/camera/surface.hpp"
 #include "core/detect/depth_snapshot.hpp"
 #include "core/detect/descriptor_match.hpp"
+#include "core/detect/fast_transform.hpp"
 #include "core/detect/point_grid.hpp"
+#include "core/detect/pose_alignment.hpp"
 #include "core/detect/pose_candidates.hpp"
 #include "core/detect/pose_evidence.hpp"
 #include "core/detect/pose_votes.hpp"
+#include "core/detect/probe_points.hpp"
 #include "core/detect/shot.hpp"
 #include "core/detect/uniform_sampling.hpp"
 #include "core/memory/workspace.hpp"
@@ -29,8 +32,8 @@ struct DetectSettings {
   std::uint32_t keypoints = 1024;        ///< scene keypoints described in a round [64, 4096]
   std::uint32_t rounds = 3;              ///< rounds of further keypoints until the object is found [1, 8]
   std::uint32_t model_keypoints = 1024;  ///< of the model's, taken from the front [64, 2048]
-  bool thorough = false;      ///< on: after the first round every proposal is brought nearer before it is
-                              ///< judged, which thin limbs need: for single pictures, twice the time
+  bool thorough = false;      ///< on: every proposal is brought nearer before it is judged, which thin limbs
+                              ///< need: for single pictures
   std::uint32_t matches = 4;  ///< model keypoints tried for each scene keypoint [1, 8]
 };
 
@@ -43,7 +46,7 @@ enum class DetectState : std::uint8_t {
 
 class FrameDetector {
  public:
-  static constexpr std::size_t kEvidencePoints = 600;
+  static constexpr std::size_t kEvidencePoints = 608;
   /// Steps of a round, in order.
   enum class Phase : std::uint8_t {
     normals,
@@ -51,6 +54,7 @@ class FrameDetector {
     describe,
     match,
     propose,
+    narrow,
     vote,
     look,
     shortlist,
@@ -81,8 +85,8 @@ class FrameDetector {
   [[nodiscard]] std::span<const PoseCandidate> candidates() const noexcept { return finalists_.all(); }
   /// Scene keypoints described so far.
   [[nodiscard]] std::size_t keypoints_used() const noexcept { return keypoints_used_; }
-  /// What the search took so far, in units of about 1000 instructions.
-  [[nodiscard]] std::int64_t cost() const noexcept { return cost_; }
+  /// About how many instructions the search took so far; the same on every machine.
+  [[nodiscard]] std::uint64_t work() const noexcept { return work_; }
   /// The best pose so far; to be believed only in state found.
   [[nodiscard]] const Detection& best() const noexcept { return best_; }
 
@@ -90,6 +94,7 @@ class FrameDetector {
   struct Proposal {
     std::uint16_t scene = 0;  // keypoint
     std::uint16_t model = 0;
+    std::uint16_t draft = 0;  // its place among the poses brought nearer
     float score = 0;
   };
   static constexpr std::size_t kShortlist = 96;  // proposals that are looked at closely
@@ -103,15 +108,19 @@ class FrameDetector {
   std::int64_t slice_describe() noexcept;
   std::int64_t slice_match() noexcept;
   std::int64_t slice_propose() noexcept;
+  std::int64_t slice_narrow() noexcept;
   std::int64_t slice_vote() noexcept;
   std::int64_t slice_look() noexcept;
   std::int64_t slice_shortlist() noexcept;
   std::int64_t slice_settle() noexcept;
   std::int64_t slice_challenge() noexcept;
+  void align(std::size_t count, const AlignSchedule& schedule, RigidTransform& pose) noexcept;
+  [[nodiscard]] PoseEvidence look_at(const RigidTransform& pose, std::size_t count, double tolerance,
+                                     double plain_weight = 1) noexcept;
   [[nodiscard]] RigidTransform pose_of(const Proposal& proposal) const noexcept;
   void fill_shortlist() noexcept;
   void try_pose(const RigidTransform& pose) noexcept;
-  void judge(PoseCandidate& candidate, std::size_t count, double floor) const noexcept;
+  void judge(PoseCandidate& candidate, std::size_t count, double floor) noexcept;
   void decide() noexcept;
   /// Enough of this round's keypoints on the posed model have their best match near the right place.
   [[nodiscard]] bool supported(const RigidTransform& pose) const noexcept;
@@ -122,6 +131,7 @@ class FrameDetector {
   double leaf_ = 0;                            // spacing of the scene points, metres
   double coarse_ = 0, fine_ = 0, widest_ = 0;  // tolerances, metres
   DepthSnapshot snapshot_;
+  ProbePoints probe_;
   UniformSampling sampling_;
   PointGrid grid_;
   ShotDescriber describer_;
@@ -137,9 +147,10 @@ class FrameDetector {
   std::span<Descriptor> descriptors_;
   std::span<LocalFrame> frames_;
   std::span<Match> matches_;
-  std::span<Proposal> proposals_;  // of this round
-  PoseVotes votes_;                // on the proposals of all rounds
-  PoseCandidates finalists_;       // poses that are refined in full
+  std::span<Proposal> proposals_;    // of this round
+  std::span<FastTransform> drafts_;  // their poses brought nearer, where the search is thorough
+  PoseVotes votes_;                  // on the proposals of all rounds
+  PoseCandidates finalists_;         // poses that are refined in full
 
   DetectState state_ = DetectState::idle;
   Phase phase_ = Phase::normals;
@@ -151,15 +162,17 @@ class FrameDetector {
   std::size_t point_count_ = 0;
   std::size_t order_count_ = 0, order_next_ = 0;
   std::size_t keypoints_used_ = 0;
-  std::int64_t cost_ = 0;
+  std::uint64_t work_ = 0;
   std::size_t key_count_ = 0;  // of this round
   std::size_t proposal_count_ = 0;
+  std::size_t judged_count_ = 0;  // of the proposals, the first so many have a score to be shortlisted by
   std::size_t shortlist_count_ = 0;
   std::size_t voted_count_ = 0;
   std::array<std::uint32_t, kVoted> voted_;  // the best-voted poses
   std::array<Proposal, kVoted> looks_;       // a quick look at each; scene: its place in voted_
   std::array<RigidTransform, kShortlist> shortlist_;
-  RigidTransform challenged_;  // the best pose, of which other attitudes are tried
+  RigidTransform challenge_;  // the best pose, of which other attitudes are tried
+  bool challenged_ = false;   // in this round
   Detection best_;
 };
 

@@ -25,6 +25,7 @@ struct PoseCandidate {
   double score = -10;
   PoseEvidence evidence;
   double seamless = 0;
+  bool settled = false;  ///< refined in full
 };
 
 /// A few distinct poses, the better one of each place.
@@ -57,6 +58,7 @@ class PoseCandidates {
 struct Verdict {
   bool certain = false;      ///< nothing but the object scores so high
   bool convincing = false;   ///< as it is
+  bool likely = false;       ///< once the descriptors support it
   bool clear = false;        ///< once every keypoint was tried: noise explains it, and nothing else fits
   bool last_resort = false;  ///< once every keypoint was tried and the descriptors support it
 };

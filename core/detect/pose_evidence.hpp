@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "core/detect/depth_snapshot.hpp"
+#include "core/detect/probe_points.hpp"
 #include "core/geometry/rigid_transform.hpp"
-#include "core/model/model_view.hpp"
 
 namespace pliant {
 
@@ -36,19 +36,13 @@ struct PoseEvidence {
   }
 };
 
-/// Looks model points [0, count) up in the snapshot under `pose` (camera <- model). A point lies on the
+/// Looks the first `count` points up in the snapshot under `pose` (camera <- model). A point lies on the
 /// surface seen at its pixel when it is off by less than `tolerance` + 3 σ of the depth there, at most `most`
 /// (metres, along the point's normal). How closely it agrees falls off with the square of the distance, and
 /// with the angle between the normals from 25° to none at 60°. Points seen at more than 80° from their normal
 /// are not counted.
-[[nodiscard]] PoseEvidence pose_evidence(const ModelView& model, const DepthSnapshot& snapshot,
+[[nodiscard]] PoseEvidence pose_evidence(const ProbePoints& points, const DepthSnapshot& snapshot,
                                          const RigidTransform& pose, std::size_t count, double tolerance,
                                          double most, double plain_weight = 1) noexcept;
-
-/// Projective point-to-plane alignment (Chen, Medioni 1992; Blais, Levine 1995) of model points [0, count)
-/// from `pose`: `iterations` steps with a gate that narrows from `gate` (metres) to three times `tolerance` +
-/// 3 σ. False when too few points hold on to the surface; `pose` is then as good as it got.
-bool refine_pose(const ModelView& model, const DepthSnapshot& snapshot, std::size_t count, double gate,
-                 double tolerance, int iterations, RigidTransform& pose) noexcept;
 
 }  // namespace pliant

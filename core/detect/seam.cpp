@@ -1,7 +1,10 @@
 #include "core/detect/seam.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "core/detect/fast_transform.hpp"
 
@@ -20,6 +23,19 @@ struct Cell {
   float depth = 0;  // of the nearest point in it, 0: empty
   Point3f point, normal;
 };
+
+using RowBits = std::array<std::uint32_t, kSide>;  // a bit a cell
+
+/// The cells and their neighbours.
+RowBits spread(const RowBits& cells) noexcept {
+  RowBits out{};
+  for (std::size_t row = 0; row < kSide; ++row) {
+    const std::uint32_t near =
+        cells[row] | (row > 0 ? cells[row - 1] : 0) | (row + 1 < kSide ? cells[row + 1] : 0);
+    out[row] = near | near << 1 | near >> 1;
+  }
+  return out;
+}
 
 /// What the snapshot shows in the direction of `at`; false where there is no reading.
 bool look(const DepthSnapshot& snapshot, const Point3f& at, Point3f& point, Point3f& normal) noexcept {
@@ -60,10 +76,10 @@ SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot
     const Point3f p = fast.point(model.positions()[i]);
     if (p.z < 0.5F * cz) continue;
     const float scale = cz / p.z;
-    const auto column = static_cast<int>(std::floor((p.x * scale - cx) / cell_edge)) + kMiddle;
-    const auto row = static_cast<int>(std::floor((p.y * scale - cy) / cell_edge)) + kMiddle;
-    if (column < 0 || row < 0 || column >= kSide || row >= kSide) continue;
-    Cell& cell = grid[row][column];
+    const float across = (p.x * scale - cx) / cell_edge + kMiddle;
+    const float down = (p.y * scale - cy) / cell_edge + kMiddle;
+    if (!(across >= 0 && down >= 0 && across < kSide && down < kSide)) continue;
+    Cell& cell = grid[static_cast<int>(down)][static_cast<int>(across)];
     if (cell.depth == 0 || p.z < cell.depth) {
       cell.depth = p.z;
       cell.point = p;
@@ -73,17 +89,23 @@ SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot
   const auto base = static_cast<float>(tolerance);
   // From here on a cell holds what is seen at its point. Only what agrees with the picture has an outline
   // there.
-  for (auto& row : grid)
-    for (Cell& cell : row) {
+  RowBits agreeing{};
+  for (int row = 0; row < kSide; ++row)
+    for (int column = 0; column < kSide; ++column) {
+      Cell& cell = grid[row][column];
       if (cell.depth == 0) continue;
       Point3f point, normal;
       const bool agrees = look(snapshot, cell.point, point, normal) &&
                           continues(snapshot, base, cell.point, cell.normal, point, normal);
       cell = agrees ? Cell{cell.depth, point, normal} : Cell{};
+      if (agrees) agreeing[static_cast<std::size_t>(row)] |= 1U << column;
     }
+  // A ring cell: nothing that agrees in the 3×3 cells around it, something in the 5×5.
+  const RowBits inner = spread(agreeing), outer = spread(inner);
   for (int row = 0; row < kSide; ++row)
-    for (int column = 0; column < kSide; ++column) {
-      // A ring cell: nothing that agrees in the 3×3 cells around it, something in the 5×5.
+    for (std::uint32_t ring = outer[static_cast<std::size_t>(row)] & ~inner[static_cast<std::size_t>(row)];
+         ring != 0; ring &= ring - 1) {
+      const int column = std::countr_zero(ring);
       const Cell* nearest = nullptr;
       int nearest_square = 100;
       for (int dr = -2; dr <= 2; ++dr)
@@ -96,7 +118,7 @@ SeamEvidence seam_evidence(const ModelView& model, const DepthSnapshot& snapshot
             nearest = &grid[r][c];
           }
         }
-      if (nearest == nullptr || nearest_square <= 2) continue;
+      if (nearest == nullptr) continue;
       const Point3f ray = {cx + (static_cast<float>(column - kMiddle) + 0.5F) * cell_edge,
                            cy + (static_cast<float>(row - kMiddle) + 0.5F) * cell_edge, cz};
       Point3f point, normal;

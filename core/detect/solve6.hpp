@@ -1,6 +1,9 @@
 // Six normal equations of a small rigid motion.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "core/geometry/rigid_transform.hpp"
 
 namespace pliant {
@@ -9,6 +12,14 @@ namespace pliant {
 /// shift).
 class NormalEquations6 {
  public:
+  NormalEquations6() noexcept = default;
+  /// From sums taken elsewhere: the matrix's lower triangle row by row, the right side, the weights.
+  NormalEquations6(const std::array<float, 21>& a, const std::array<float, 6>& b, float weight) noexcept
+      : weight_(static_cast<double>(weight)) {
+    for (std::size_t k = 0; k < 21; ++k) a_[k] = static_cast<double>(a[k]);
+    for (std::size_t k = 0; k < 6; ++k) b_[k] = static_cast<double>(b[k]);
+  }
+
   void add(const double (&row)[6], double residual, double weight) noexcept {
     int k = 0;
     for (int i = 0; i < 6; ++i) {

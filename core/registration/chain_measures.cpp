@@ -34,14 +34,23 @@ CloudTarget base_target(const RegistrationState& s) noexcept {
   return {&s.base_grid, s.base.first(s.base_count), {}, s.base_taken.first(s.base_count)};
 }
 
+std::size_t align_to_base(const RegistrationState& s, std::span<const std::uint16_t> which,
+                          const AlignSettings& settings, RigidTransform& pose) noexcept {
+  // Where nothing is near, all points within the gate are looked at: those of a surface across it.
+  const double gate = 0.5 * (settings.first_gate + settings.last_gate) + settings.reach;
+  const double across = 2 * gate / s.base_spacing;
+  const std::uint64_t each = work::kNearest + static_cast<std::uint64_t>(work::kCandidate * across * across);
+  s.work += which.size() * static_cast<std::size_t>(settings.iterations) * each;
+  return align_to_cloud(s.model, which, base_target(s), settings, pose);
+}
+
 void refine(const RegistrationState& s, std::span<const std::uint16_t> which, double noise,
             RigidTransform& pose) noexcept {
   if (!s.settings.refinement) return;
   const double last = std::max(1.5 * s.spacing, 4 * noise);
   const AlignSettings fine = {std::max(match_tolerance(s), last), last, 1.5 * s.spacing, 10};
-  s.work += which.size() * static_cast<std::size_t>(fine.iterations) * work::kNearest;
   RigidTransform refined = pose;
-  if (align_to_cloud(s.model, which, base_target(s), fine, refined) > 0) pose = refined;
+  if (align_to_base(s, which, fine, refined) > 0) pose = refined;
 }
 
 void measure(RegistrationState& s, const RigidTransform& pose, double noise, bool only_free) noexcept {

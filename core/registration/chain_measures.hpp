@@ -41,6 +41,9 @@ std::size_t collect_matches(RegistrationState& s, Wanted&& wanted) noexcept {
   return count;
 }
 
+/// align_to_cloud() with all of the scene; counts the work.
+std::size_t align_to_base(const RegistrationState& s, std::span<const std::uint16_t> which,
+                          const AlignSettings& settings, RigidTransform& pose) noexcept;
 /// The last touch: on all scene points, with a gate of a spacing and a half or four times the noise.
 void refine(const RegistrationState& s, std::span<const std::uint16_t> which, double noise,
             RigidTransform& pose) noexcept;

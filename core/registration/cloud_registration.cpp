@@ -27,6 +27,19 @@ constexpr double kMostWork = 2.65;
 // Around an instance found in a picture, this many model radii may hold parts of it, moved or deformed.
 constexpr double kReach = 1.6;
 
+constexpr std::size_t kEnoughReadings = 16384;
+
+/// Every n-th of the finite points, moved to the front.
+std::span<const Point3f> some_readings(std::span<Point3f> points) noexcept {
+  std::size_t count = 0;
+  for (const Point3f& p : points)
+    if (p.x == p.x) points[count++] = p;
+  const std::size_t step = count / kEnoughReadings + 1;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < count; i += step) points[kept++] = points[i];
+  return points.first(kept);
+}
+
 }  // namespace
 
 std::size_t CloudRegistration::workspace_bytes(const ModelView& model, std::size_t scene_points,
@@ -207,10 +220,10 @@ const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& fr
   s.one_view = true;
   s.eye = Vector3::Zero();
   const std::size_t keys = s.key_count;
-  const std::span<const Point3f> points = s.picture_points.first(pixels);
+  const std::span<Point3f> points = s.picture_points.first(pixels);
   if (count == 0) {
-    // Perhaps the picture says why.
-    static_cast<void>(inspect(points));
+    // Perhaps the picture says why: some of its readings are enough for that.
+    static_cast<void>(inspect(some_readings(points)));
     done(RegistrationStage::normals);
     s.key_count = keys;
     return s.result.outcome == RegistrationOutcome::not_found ? finish(0) : s.result;

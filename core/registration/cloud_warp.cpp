@@ -54,6 +54,7 @@ void warp_cloud(RegistrationState& s, const CloudWarpSettings& settings, Instanc
   const double first = kFirstGate * s.model.radius(), last = kLastSpacings * s.spacing;
   if (free_count > 0) {
     const std::size_t targets = near_scene(w, free_count, 2 * first);
+    s.work += s.base_count * work::kNearest;
     static_cast<void>(w.room.target_grid.build(w.room.targets.first(targets), 2 * s.spacing));
     // A border edge gives by `strain` of its length, or bends by that angle, where a reading is off by a
     // quarter of the spacing: what sampling leaves.

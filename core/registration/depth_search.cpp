@@ -29,6 +29,7 @@ void lay_out(Workspace& workspace, const RegistrationState& s, const Intrinsics&
   // There is no next frame to try.
   settings.rounds = 5;
   settings.thorough = true;
+  settings.matches = 3;
   settings.model_keypoints = 2048;
   surface.lay_out(workspace, camera);
   detector.lay_out(workspace, s.model, camera, settings);
@@ -122,7 +123,7 @@ std::size_t search_picture(RegistrationState& s, const DepthFrame& frame, const 
       if (detector.phase() != phase) tell(phase);
     }
     tell(detector.phase());
-    s.work += 1000 * static_cast<std::uint64_t>(detector.cost());
+    s.work += detector.work();
     s.key_count = std::max(s.key_count, detector.keypoints_used());
     if (detector.state() != DetectState::found) break;
     seen[count++] = {detector.best().pose, detector.best().score};

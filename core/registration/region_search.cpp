@@ -124,8 +124,7 @@ bool find_region(RegistrationState& s, const InstanceBuffers& buffers, std::span
     const double gate = k < count ? 2 * match_tolerance(s) : (k == count ? 0.1 : 0.2) * s.model.radius();
     const AlignSettings wide = {gate, match_tolerance(s), std::max(gate, 1.5 * s.spacing), 12};
     const std::span<const std::uint16_t> some = s.part.first(std::min<std::size_t>(part, 800));
-    s.work += some.size() * static_cast<std::size_t>(wide.iterations) * work::kNearest;
-    if (align_to_cloud(s.model, some, base_target(s), wide, trial) == 0) continue;
+    if (align_to_base(s, some, wide, trial) == 0) continue;
     refine(s, s.part.first(part), noise, trial);
     const Gain gain = gain_of(s, buffers, poses, trial, noise);
     if (gain.points > best.points) {

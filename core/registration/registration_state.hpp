@@ -12,6 +12,7 @@
 #include "core/detect/point_grid.hpp"
 #include "core/detect/shot.hpp"
 #include "core/detect/uniform_sampling.hpp"
+#include "core/detect/work.hpp"
 #include "core/registration/cloud_labels.hpp"
 #include "core/registration/cloud_registration.hpp"
 #include "core/registration/normal_estimation.hpp"
@@ -28,24 +29,14 @@ struct InstanceBuffers {
   std::span<float> residuals;
 };
 
-/// About how many instructions each thing takes that is done many times, measured on x86-64. Their sum tells
-/// how long a registration takes, the same on every machine.
-namespace work {
-inline constexpr std::uint64_t kNormal = 12000;
-inline constexpr std::uint64_t kDescriptor = 60000;
-inline constexpr std::uint64_t kComparison = 24;  // of two descriptors
-inline constexpr std::uint64_t kVote = 12;        // of a match on a pose
-inline constexpr std::uint64_t kNearest = 250;    // the nearest point to one
-inline constexpr std::uint64_t kReading = 600;    // of the warp
-}  // namespace work
-
 struct RegistrationState {
   RegistrationSettings settings;
   ModelView model;
   double support = 0;     ///< of the descriptors, metres
   bool one_view = false;  ///< all of the scene was seen from `eye`
   Vector3 eye = Vector3::Zero();
-  double spacing = 0;  ///< the coarser of the model's and the scene's, metres
+  double base_spacing = 0;  ///< of the scene as thinned, metres
+  double spacing = 0;       ///< the coarser of the model's and the scene's, metres
 
   // The scene, thinned of duplicates: `base`; a coarser one with normals that carries the descriptors:
   // `working`.

@@ -58,8 +58,9 @@ void thin_scene(RegistrationState& s, std::span<const Point3f> scene) noexcept {
       std::min(s.sampling.sample(scene, kThinning * s.model.spacing(), s.base_index), s.base.size());
   for (std::size_t i = 0; i < s.base_count; ++i) s.base[i] = scene[s.base_index[i]];
   static_cast<void>(s.base_grid.build(s.base.first(s.base_count), 2 * s.model.spacing()));
-  const double scene_spacing = mean_spacing(s, 2 * s.model.spacing());
-  s.spacing = std::max(s.model.spacing(), scene_spacing);
+  s.base_spacing = mean_spacing(s, 2 * s.model.spacing());
+  s.spacing = std::max(s.model.spacing(), s.base_spacing);
+  s.work += scene.size() * work::kThinned;
 }
 
 bool scene_is_flat(const RegistrationState& s) noexcept {

@@ -46,7 +46,7 @@ int look(int argc, char** argv) {
   }
   ViewMaker maker(target, others);
   int right = 0, wrong = 0, missed = 0, claims = 0;
-  std::vector<double> times, empty_times;
+  std::vector<double> times, empty_times, works, empty_works;
   for (int made = 0; made < views; ++seed) {
     View view;
     if (!maker.make(seed, view)) continue;
@@ -55,6 +55,7 @@ int look(int argc, char** argv) {
     const RegistrationResult& result =
         run.registration.register_depth(frame_of(view.with, camera), camera, SensorDescription());
     times.push_back(thread_ms() - start);
+    works.push_back(1e-6 * static_cast<double>(result.work));
     if (result.outcome != RegistrationOutcome::found) {
       ++missed;
       std::printf("seed %llu: missed, %.0f %% of it in sight at %.2f m\n",
@@ -74,6 +75,7 @@ int look(int argc, char** argv) {
     const RegistrationResult& nothing =
         run.registration.register_depth(frame_of(view.without, camera), camera, SensorDescription());
     empty_times.push_back(thread_ms() - start);
+    empty_works.push_back(1e-6 * static_cast<double>(nothing.work));
     if (nothing.outcome == RegistrationOutcome::found) {
       ++claims;
       std::printf("seed %llu: claimed without being there, score %.2f\n",
@@ -81,9 +83,10 @@ int look(int argc, char** argv) {
     }
     std::fflush(stdout);
   }
-  std::printf("| %s | %d | %.1f %% | %d wrong, %d missed | %d of %d | %.0f, %.0f ms |\n",
+  std::printf("| %s | %d | %.1f %% | %d wrong, %d missed | %d of %d | %.0f, %.0f ms | %.0f, %.0f million |\n",
               std::filesystem::path(argv[1]).stem().c_str(), views, 100.0 * right / views, wrong, missed,
-              claims, views, median_of(times), median_of(empty_times));
+              claims, views, median_of(times), median_of(empty_times), median_of(works),
+              median_of(empty_works));
   return 0;
 }
 

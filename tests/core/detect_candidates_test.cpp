@@ -87,6 +87,10 @@ TEST(Verdict, BelievesWhatStandsOutAndFits) {
   EXPECT_TRUE(verdict_on(detection(0.7, 0.5, 0.6, 0.8)).convincing);  // beyond doubt
   EXPECT_TRUE(verdict_on(detection(0.4, 0.1, -10, 0.8)).convincing);  // alone, one attitude
   EXPECT_FALSE(verdict_on(detection(0.31, 0.11, 0.03, 0.91)).convincing);
+  EXPECT_TRUE(verdict_on(detection(0.31, 0.11, 0.03, 0.91)).likely);  // but for the descriptors
+  EXPECT_TRUE(
+      verdict_on(detection(0.31, 0.11, -0.1, 0.96)).convincing);  // noise explains it, nothing else fits
+  EXPECT_FALSE(verdict_on(detection(0.31, 0.16, -0.1, 0.96)).likely);
   EXPECT_FALSE(verdict_on(detection(0.4, 0.3, -10, 0.99)).convincing);  // another place is nearly as good
   EXPECT_FALSE(verdict_on(detection(0.47, 0, 0.4, 0.83)).convincing);   // any attitude fits: something round
   EXPECT_FALSE(verdict_on(detection(0.32, -10, 0.08, 0.8)).convincing);
@@ -107,9 +111,9 @@ TEST(Verdict, LastResortNeedsAClearFieldToo) {
 TEST(PoseCandidates, WhatNoiseExplainsAndNothingElseFitsIsClearAtALowerScore) {
   EXPECT_TRUE(verdict_on(detection(0.21, -10, -0.1, 0.96)).clear);
   EXPECT_TRUE(verdict_on(detection(0.21, -10, -0.1, 0.96)).last_resort);
-  EXPECT_FALSE(verdict_on(detection(0.21, -10, -0.1, 0.9)).clear);   // a tenth that noise does not explain
-  EXPECT_FALSE(verdict_on(detection(0.21, -10, 0.03, 0.98)).clear);  // another attitude fits a little
-  EXPECT_FALSE(verdict_on(detection(0.21, 0.1, -0.1, 0.98)).clear);  // so does another place
+  EXPECT_FALSE(verdict_on(detection(0.21, -10, -0.1, 0.9)).clear);    // a tenth that noise does not explain
+  EXPECT_FALSE(verdict_on(detection(0.21, -10, 0.03, 0.98)).clear);   // another attitude fits a little
+  EXPECT_FALSE(verdict_on(detection(0.21, 0.12, -0.1, 0.98)).clear);  // so does another place
   EXPECT_FALSE(verdict_on(detection(0.17, -10, -0.1, 1)).clear);
   EXPECT_FALSE(verdict_on(detection(0.21, -10, -0.1, 0.96)).convincing);
 }

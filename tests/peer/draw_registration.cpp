@@ -21,8 +21,11 @@ Point3f point3f(const Vector3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
-/// camera <- scene: looks along the direction in which the points are spread least, from the side of `front`.
-RigidTransform looking_at(std::span<const Point3f> points, const Vector3& front) {
+constexpr int kKeyWidth = 440;  // pixels beside the object
+
+/// camera <- scene: looks along the direction in which the points are spread least, from the side of `front`,
+/// `up` at the top.
+RigidTransform looking_at(std::span<const Point3f> points, const Vector3& front, const Vector3& up) {
   Vector3 mean = Vector3::Zero();
   for (const Point3f& p : points) mean += vector3(p);
   mean /= static_cast<double>(points.size());
@@ -31,7 +34,8 @@ RigidTransform looking_at(std::span<const Point3f> points, const Vector3& front)
   const SymmetricEigen eigen = symmetric_eigen(spread);
   Vector3 z = eigen.vectors.col(0);
   if (z.dot(front) > 0) z = -z;
-  const Vector3 y = eigen.vectors.col(2);  // the longest way runs down the picture
+  Vector3 y = eigen.vectors.col(2);  // the longest way runs down the picture
+  if (y.dot(up) > 0) y = -y;
   const Vector3 x = y.cross(z);
   RigidTransform camera;
   camera.rotation.row(0) = x.transpose();
@@ -75,7 +79,8 @@ int draw(char** argv) {
     displacement[i] =
         static_cast<float>((vector3(found.positions[i]) - base * vector3(model.view.positions()[i])).norm());
   }
-  const RigidTransform camera = looking_at(found.positions, front);
+  const RigidTransform camera =
+      looking_at(found.positions, front, base.rotation.col(1));  // meshes stand along y
   std::vector<Point3f> points;
   std::vector<std::int8_t> labels(found.labels.begin(), found.labels.end());
   for (std::size_t i = 0; i < model.view.size(); ++i) {
@@ -93,6 +98,8 @@ int draw(char** argv) {
   view.displacement = displacement;
   view.spacing = model.view.spacing();
   view.camera = camera_that_shows(points, 480, 480);
+  view.camera.width += kKeyWidth;
+  view.camera.cx += kKeyWidth;
   view.title = folder.filename().string();
   const Canvas canvas = draw_scene(view);
   if (const Outcome written = write_png_rgb8(argv[3], canvas.width(), canvas.height(), canvas.rgb());
