@@ -90,6 +90,7 @@ void TrackerState::lay_out(Workspace& workspace, const ModelView& model_view,
   strains = workspace.take<float>(count);
   DetectSettings detect;
   detect.rounds = 1;  // a new picture is worth more than further keypoints of an old one
+  detect.confirmed = true;
   detector.lay_out(workspace, model_view, intrinsics, detect);
 }
 

@@ -32,6 +32,7 @@ struct DetectSettings {
   std::uint32_t keypoints = 1024;        ///< scene keypoints described in a round [64, 4096]
   std::uint32_t rounds = 3;              ///< rounds of further keypoints until the object is found [1, 8]
   std::uint32_t model_keypoints = 1024;  ///< of the model's, taken from the front [64, 2048]
+  bool confirmed = false;     ///< on: who asks believes a weak pose only when the next picture shows it again
   bool thorough = false;      ///< on: every proposal is brought nearer before it is judged, which thin limbs
                               ///< need: for single pictures
   std::uint32_t matches = 4;  ///< model keypoints tried for each scene keypoint [1, 8]

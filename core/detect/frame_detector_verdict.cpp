@@ -157,7 +157,8 @@ void FrameDetector::decide() noexcept {
   const bool last = round_ + 1 >= settings_.rounds || all_described;
   // The last resort is for who has looked at everything, or nearly.
   const bool thorough = all_described || round_ >= 2;
-  const bool believed = verdict.convincing || (thorough && verdict.clear) ||
+  const bool believed = verdict.convincing || (settings_.confirmed && verdict.again) ||
+                        (thorough && verdict.clear) ||
                         ((verdict.likely || (thorough && verdict.last_resort)) && supported(best_.pose));
   if (believed) {
     state_ = DetectState::found;

@@ -59,6 +59,7 @@ struct Verdict {
   bool certain = false;      ///< nothing but the object scores so high
   bool convincing = false;   ///< as it is
   bool likely = false;       ///< once the descriptors support it
+  bool again = false;        ///< once the next picture shows it in the same place
   bool clear = false;        ///< once every keypoint was tried: noise explains it, and nothing else fits
   bool last_resort = false;  ///< once every keypoint was tried and the descriptors support it
 };
