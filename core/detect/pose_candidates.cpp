@@ -31,8 +31,8 @@ constexpr double kLittleTwin = 0.35;
 constexpr double kClearDoubt = 0.06;
 constexpr double kClear = 0.2;
 // Noisier sensors than descriptors bear leave such a fit, seen again and again: a printed dragon before a
-// stereo camera, 0.05 to 0.08. Twice what one picture may leave.
-constexpr double kDoubtOfOne = 2 * kClearDoubt;
+// stereo camera 0.05 to 0.13. Half of what clutter leaves at the least.
+constexpr double kDoubtOfOne = 0.5 * kMostDoubt;
 constexpr double kMostOutside =
     0.4;  // of the facing points; with more out of the picture, only certainty counts
 
