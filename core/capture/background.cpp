@@ -158,11 +158,13 @@ bool BackgroundPlanes::fit(BackgroundPlane& plane) noexcept {
   }
   const std::int32_t extent = connected_extent(plane);
   if (extent < least_extent_ * kUnitsPerMetre) return false;
-  if (extent >= kSurelyBackground * least_extent_ * kUnitsPerMetre) return true;
-  // Behind the top of a box or a cushion lies the table; behind the background next to nothing.
+  // Behind the top of a box or a cushion lies the table; behind the background next to nothing; behind a wide
+  // table part of the floor. What cuts through the top of a cushion and what stands level with it is as wide,
+  // with the whole table behind.
   std::uint32_t behind = 0;
   for (const LatticePoint& point : lattice_)
     behind += point.usable && plane.height(point.p) < -2 * tolerance(point.sigma) ? 1U : 0U;
+  if (extent >= kSurelyBackground * least_extent_ * kUnitsPerMetre) return behind < 4 * plane.points;
   return 2 * behind < plane.points;
 }
 

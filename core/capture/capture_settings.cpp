@@ -7,9 +7,14 @@
 
 namespace pliant {
 
+double usual_noise(const SensorDescription& sensor) noexcept {
+  constexpr double kUsualDistance = 0.6;
+  return sensor.sigma(kUsualDistance);
+}
+
 VolumePlan volume_plan(const CaptureSettings& settings, const SensorDescription& sensor) noexcept {
-  constexpr double kUsualDistance = 0.6, kVoxelSigmas = 1.5, kBackSigmas = 4;
-  const double sigma = sensor.sigma(kUsualDistance);
+  constexpr double kVoxelSigmas = 1.5, kBackSigmas = 4;
+  const double sigma = usual_noise(sensor);
   const double wished = settings.voxel > 0 ? settings.voxel : kVoxelSigmas * sigma;
   const double finest = settings.size / (kMostVoxels - 1);
   VolumePlan plan;

@@ -45,9 +45,12 @@ struct VolumePlan {
   [[nodiscard]] int blocks() const noexcept { return cells / kBlock; }
 };
 
-/// Voxels as wide as 1.5 σ of a reading at 0.6 m, the distance at which an object of this size is usually
-/// shown: finer ones would only store noise. Not finer than kMostVoxels allow. Distances are told up to five
-/// voxels before the surface, which is how far alignment looks, and up to three behind it, at least 4 σ.
+/// σ of a reading at 0.6 m, the distance at which objects are usually shown, metres.
+[[nodiscard]] double usual_noise(const SensorDescription& sensor) noexcept;
+
+/// Voxels as wide as 1.5 usual_noise(): finer ones would only store noise. Not finer than kMostVoxels allow.
+/// Distances are told up to five voxels before the surface, which is how far alignment looks, and up to three
+/// behind it, at least 4 σ.
 [[nodiscard]] VolumePlan volume_plan(const CaptureSettings& settings,
                                      const SensorDescription& sensor) noexcept;
 

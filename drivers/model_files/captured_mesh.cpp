@@ -6,10 +6,12 @@
 #include <numeric>
 #include <vector>
 
+#include "core/limits.hpp"
 #include "drivers/geometry_files/surface_net.hpp"
 #include "drivers/model_files/mesh.hpp"
 #include "drivers/model_files/mesh_normals.hpp"
 #include "drivers/model_files/mesh_smoothing.hpp"
+#include "drivers/model_files/surface_sampling.hpp"
 
 namespace pliant {
 
@@ -84,6 +86,14 @@ Geometry captured_mesh(const DistanceVolume& volume, const CapturedMeshSettings&
   for (const Vector3& n : vertex_normals(mesh)) put(n, geometry.normals);
   geometry.triangles = std::move(mesh.triangles);
   return geometry;
+}
+
+double captured_spacing(const Geometry& captured, double sigma) {
+  Mesh mesh;
+  for (const Point3f& p : captured.vertices)
+    mesh.vertices.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+  mesh.triangles = captured.triangles;
+  return std::min(4 * sigma, even_spacing(surface_area(mesh), limits::kMaxModelKeypoints));
 }
 
 }  // namespace pliant

@@ -6,9 +6,15 @@
 
 namespace pliant {
 
+/// Weight (see integrate.hpp) of half a straight view, or of some flat ones: what is believed while views
+/// still come.
+inline constexpr int kSeenWell = 8;
+
 struct CapturedMeshSettings {
-  /// Weight (see integrate.hpp) below which a node is not believed: half a straight view, or some flat ones.
-  int least_weight = 8;
+  /// Weight below which a node is not believed: that of the flattest reading. Each kept
+  /// view stands for some nine degrees of pictures, and what is seen between two parts of an object is often
+  /// seen in one of them, and flat; what flickers was left out of the views.
+  int least_weight = 2;
   /// Parts smaller than this share of the largest are islands and go [0, 1].
   double least_part = 0.1;
   /// Height of the table in the model's frame, metres; what lies lower, and flat remains on it, goes.
@@ -21,5 +27,11 @@ struct CapturedMeshSettings {
 /// Triangles wound outward and unit normals, model frame, metres; with a border where nothing was seen. Empty
 /// when nothing was captured.
 [[nodiscard]] Geometry captured_mesh(const DistanceVolume& volume, const CapturedMeshSettings& settings);
+
+/// Distance between the points of a model of `captured`, metres. The inlier test allows four σ (`sigma`: of a
+/// reading, metres): denser points say nothing that a reading could tell, and the normals of the picture,
+/// which are taken over one distance, would be noise. A small object's lie as dense as it takes for all
+/// keypoints that a model has room for.
+[[nodiscard]] double captured_spacing(const Geometry& captured, double sigma);
 
 }  // namespace pliant

@@ -62,8 +62,7 @@ void CaptureShow::show(const DepthFrame& frame, const ObjectCapture& capture, co
 void CaptureShow::renew_model(const ObjectCapture& capture) {
   points_.resize(kMostPoints);
   normals_.resize(kMostPoints);
-  const std::size_t count =
-      surface_points(capture.volume(), CapturedMeshSettings().least_weight, points_, normals_);
+  const std::size_t count = surface_points(capture.volume(), kSeenWell, points_, normals_);
   points_.resize(count);
   normals_.resize(count);
   if (count == 0) return;

@@ -11,6 +11,7 @@ struct CapturedModelOptions {
   std::string output;    ///< model file
   std::string ply;       ///< mesh file; empty: none
   double clearance = 0;  ///< metres above the table that are cut away
+  double sigma = 0;      ///< of the sensor's readings where objects are usually shown, metres
 };
 
 /// Cleans the captured surface, writes the files and prints what came out. Where the model's own place cannot

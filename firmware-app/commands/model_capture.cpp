@@ -205,8 +205,8 @@ int capture(const CaptureOptions& given) {
   line.show("closing the drift and fusing the views");
   const JointFit joint = object.finish();
   line.clear();
-  const int code =
-      write_captured_model({options.output, options.ply, options.capture.clearance}, object, joint);
+  const int code = write_captured_model(
+      {options.output, options.ply, options.capture.clearance, usual_noise(sensor)}, object, joint);
   if (code == kExitDone && taken->last == SourceEvent::lost) return report({ErrorKind::device, taken->fault});
   return code;
 }

@@ -21,6 +21,7 @@ Result<Search> search_for(const ObjectCapture& capture, const Intrinsics& camera
                           const SensorDescription& sensor) {
   CapturedMeshSettings cleaning;
   cleaning.table_height = capture.table_height();
+  cleaning.least_weight = kSeenWell;
   ModelBuildSettings settings;
   settings.wound_outward = true;
   settings.front_only = true;

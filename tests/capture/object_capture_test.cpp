@@ -114,6 +114,35 @@ TEST(ObjectCapture, MakesNoHeapCallInAPicture) {
   EXPECT_GT(capture.keyframes().all().size(), 10U);
 }
 
+TEST(BackgroundPlanes, WhatStandsLevelWithTheObjectIsNoTable) {
+  // A low block, and a rail as high to either side: together they reach twice as far as a table must.
+  const auto scene = [](const Vector3& ray) {
+    const Vector3 up(0, -0.8191520, -0.5735764), along(0, 0.5735764, -0.8191520), foot(0, 0.08, 0.7);
+    const double z = plane_depth(ray, up, up.dot(foot) + 0.05);
+    const Vector3 p = z * ray;
+    const double forward = along.dot(p - foot);
+    const bool block = std::fabs(p.x()) < 0.07 && std::fabs(forward) < 0.05;
+    const bool rail = std::fabs(p.x()) < 0.5 && std::fabs(forward) < 0.02;
+    return block || rail ? nearer(table_depth(ray), z) : table_depth(ray);
+  };
+  Surface surface;
+  BackgroundPlanes planes;
+  const auto lay_out = [&](Workspace& workspace) {
+    surface.lay_out(workspace, small_camera());
+    planes.lay_out(workspace, small_camera());
+  };
+  Workspace measured;
+  lay_out(measured);
+  const Block block = block_of(measured.used());
+  Workspace workspace({block.get(), measured.used()});
+  lay_out(workspace);
+  surface.start(small_camera(), {}, Kernels::automatic);
+  planes.start(surface, 0.3);
+  surface.build(Picture(scene).frame(), {0, 0, small_camera().width, small_camera().height});
+  planes.update(surface);
+  EXPECT_EQ(planes.planes().size(), 1U);
+}
+
 /// FNV-1a over the volume.
 std::uint64_t digest(const DistanceVolume& volume) {
   std::uint64_t hash = 14695981039346656037U;
