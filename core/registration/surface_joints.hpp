@@ -9,8 +9,9 @@
 
 namespace pliant {
 
-/// How far along the surface every model point is from the nearest one that a region explains, and which that
-/// is: s.along (metres) and s.anchor. Bounded sweeps over the surface graph.
+/// How far along the surface every model point is from the nearest one that a region explains, by more than a
+/// strip, and which that is: s.along (metres) and s.anchor. Bounded sweeps over the surface graph; takes
+/// s.proposal.
 void measure_reach(RegistrationState& s, std::span<const std::int8_t> labels) noexcept;
 
 /// Whether model point `i` can have come to `scene`, by how far it hangs from what `poses` explain. After
