@@ -110,8 +110,8 @@ void drop_doubles(std::vector<Triangle>& triangles) {
   triangles.resize(kept);
 }
 
-/// Drops vertices of no triangle; returns how many.
-std::size_t drop_loose_vertices(Mesh& mesh) {
+/// Drops vertices of no triangle.
+void drop_loose_vertices(Mesh& mesh) {
   std::vector<std::uint32_t> place(mesh.vertices.size(), kGone);
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t corner : t) place[corner] = 0;
@@ -122,12 +122,19 @@ std::size_t drop_loose_vertices(Mesh& mesh) {
     if (!mesh.given_normals.empty()) mesh.given_normals[kept] = mesh.given_normals[i];
     place[i] = kept++;
   }
-  const std::size_t dropped = mesh.vertices.size() - kept;
   mesh.vertices.resize(kept);
   if (!mesh.given_normals.empty()) mesh.given_normals.resize(kept);
   for (Triangle& t : mesh.triangles)
     for (std::uint32_t& corner : t) corner = place[corner];
-  return dropped;
+}
+
+/// Vertices that no triangle of the input has, not even one without area. `place`: where each was welded to.
+std::size_t count_loose(const Geometry& geometry, const std::vector<std::uint32_t>& place,
+                        std::size_t welded) {
+  std::vector<bool> used(welded);
+  for (const Triangle& t : geometry.triangles)
+    for (const std::uint32_t corner : t) used[place[corner]] = true;
+  return static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
 }
 
 }  // namespace
@@ -160,8 +167,12 @@ Mesh clean_mesh(const Geometry& geometry, double metres_per_unit, std::vector<st
   if (!geometry.triangles.empty() && mesh.triangles.empty())
     warnings.push_back("none of the triangles has an area: the vertices are taken as a cloud");
   if (!mesh.triangles.empty()) {
-    const std::size_t loose = drop_loose_vertices(mesh);
-    if (loose > 0) warnings.push_back(fmt::format("{} vertices of no triangle are left out", loose));
+    const std::size_t loose = count_loose(geometry, place, mesh.vertices.size());
+    if (loose > 0)
+      warnings.push_back(fmt::format("{} of no triangle {} left out",
+                                     loose == 1 ? "1 vertex" : fmt::format("{} vertices", loose),
+                                     loose == 1 ? "is" : "are"));
+    drop_loose_vertices(mesh);
   }
   if (geometry.dropped > 0)
     warnings.push_back(fmt::format("{} points without finite coordinates are left out", geometry.dropped));

@@ -110,7 +110,7 @@ TEST(ModelBuilder, ManagesWithUnsoundMeshes) {
   g.triangles.push_back({t[1], t[0], t[2]});  // doubled and turned over
   const Made made = make(g);
   EXPECT_LT(made.view().radius(), 0.101);
-  EXPECT_TRUE(warned(made.built, "1 vertices of no triangle"));
+  EXPECT_TRUE(warned(made.built, "1 vertex of no triangle is left out"));
   EXPECT_GT(share_outward(made.view(), [](const Vector3& p, const Vector3& n) { return n.dot(p); }), 0.999);
 
   Geometry flat;  // triangles without area only: a cloud is left
