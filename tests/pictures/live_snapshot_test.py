@@ -73,10 +73,13 @@ class LiveSnapshot(unittest.TestCase):
 
     def test_the_picture_shows_the_object_on_the_depth(self):
         self.track("--publish-depth")
-        output, ended = self.snapshot("--wait", "30")
-        self.assertEqual(ended.returncode, 0, ended.stderr)
-        self.assertRegex(ended.stdout, r"now\.png: frame \d+: tracking")
-        rows = pixels(output)
+        for _ in range(10):  # a busy machine loses datagrams, and with one of them a depth picture
+            output, ended = self.snapshot("--wait", "30")
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            self.assertRegex(ended.stdout, r"now\.png: frame \d+: tracking")
+            rows = pixels(output)
+            if len(rows) == 240:
+                break
         self.assertEqual((len(rows[0]), len(rows)), (320, 240))
         self.assertGreater(share(rows, is_base), 0.03)
         self.assertGreater(share(rows, is_depth), 0.3)
