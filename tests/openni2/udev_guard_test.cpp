@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <fstream>
 #include <string>
@@ -46,6 +47,38 @@ TEST_F(UdevGuard, WhatIsThereIsToldAsItIs) {
   std::ifstream("/sys/class/net/lo/mtu") >> mtu;
   EXPECT_EQ(udev_device_get_sysattr_value(device, "mtu"), mtu);
   EXPECT_EQ(udev_device_get_sysattr_value(device, "no_such_thing"), nullptr);
+  find<udev_device* (*)(udev_device*)>("udev_device_unref")(device);
+  find<udev* (*)(udev*)>("udev_unref")(context);
+}
+
+/// OpenNI2 cancels its USB thread when that is late.
+TEST_F(UdevGuard, AThreadThatIsCancelledMeanwhileEndsAfterwards) {
+  ASSERT_NE(library_, nullptr);
+  udev* context = find<udev* (*)()>("udev_new")();
+  udev_device* device = find<udev_device* (*)(udev*, const char*)>("udev_device_new_from_syspath")(
+      context, "/sys/class/net/lo");
+  if (device == nullptr) GTEST_SKIP() << "no /sys/class/net/lo here";
+  struct Asked {
+    udev_device* device = nullptr;
+    std::string mtu;
+  } asked{device, {}};
+  pthread_t thread{};
+  ASSERT_EQ(pthread_create(
+                &thread, nullptr,
+                [](void* given) -> void* {
+                  auto& of = *static_cast<Asked*>(given);
+                  pthread_cancel(pthread_self());  // strikes where the thread next reads a file
+                  const char* mtu = udev_device_get_sysattr_value(of.device, "mtu");
+                  if (mtu != nullptr) of.mtu = mtu;
+                  pthread_testcancel();
+                  return nullptr;
+                },
+                &asked),
+            0);
+  void* ended = nullptr;
+  pthread_join(thread, &ended);
+  EXPECT_EQ(ended, PTHREAD_CANCELED);
+  EXPECT_FALSE(asked.mtu.empty());
   find<udev_device* (*)(udev_device*)>("udev_device_unref")(device);
   find<udev* (*)(udev*)>("udev_unref")(context);
 }
