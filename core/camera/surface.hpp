@@ -37,10 +37,9 @@ struct PixelSpan {
   std::int32_t span = 0;  ///< pixels · 1/8 mm
 };
 
-/// Looks at normals are kept: a surface is one thread's.
 /// Owns a depth picture of the camera's size, 16 bits a pixel at 1/8 mm, 0 = no reading. Only the window of
 /// the last build() holds data; everything outside it reads as "no reading". What a pixel of the window holds
-/// does not depend on the window.
+/// does not depend on the window. Normals are kept once they were asked for: a surface is one thread's.
 class Surface {
  public:
   /// Takes what a camera of this size needs.

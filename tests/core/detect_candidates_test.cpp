@@ -97,6 +97,15 @@ TEST(Verdict, BelievesWhatStandsOutAndFits) {
   EXPECT_FALSE(verdict_on(detection(0.25, -10, -10, 0.99)).convincing);
 }
 
+TEST(Verdict, AWeakFitMayComeAgainWhereItStandsAlone) {
+  EXPECT_TRUE(verdict_on(detection(0.27, 0.05, 0.02, 0.95)).again);
+  EXPECT_FALSE(verdict_on(detection(0.27, 0.05, 0.02, 0.95)).convincing);
+  EXPECT_FALSE(verdict_on(detection(0.27, 0.05, 0.02, 0.85)).again);  // too much is left unexplained
+  EXPECT_FALSE(verdict_on(detection(0.27, 0.05, 0.05, 0.95)).again);  // another attitude fits as well
+  EXPECT_FALSE(verdict_on(detection(0.27, 0.15, 0.02, 0.95)).again);  // so does another place
+  EXPECT_FALSE(verdict_on(detection(0.21, 0.05, -0.1, 0.95)).again);
+}
+
 TEST(Verdict, LastResortNeedsAClearFieldToo) {
   EXPECT_TRUE(verdict_on(detection(0.25, -10, -0.1, 0.85)).last_resort);
   EXPECT_FALSE(verdict_on(detection(0.2, -10, 0.03, 0.9)).last_resort);  // clutter of a like shape

@@ -73,7 +73,7 @@ class LiveSnapshot(unittest.TestCase):
 
     def test_the_picture_shows_the_object_on_the_depth(self):
         self.track("--publish-depth")
-        for _ in range(10):  # a busy machine loses datagrams, and with one of them a depth picture
+        for _ in range(3):  # a busy machine loses datagrams, and with one of them a depth picture
             output, ended = self.snapshot("--wait", "30")
             self.assertEqual(ended.returncode, 0, ended.stderr)
             self.assertRegex(ended.stdout, r"now\.png: frame \d+: tracking")
