@@ -8,6 +8,8 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kSeeds = 8;
+/// A patch of a part is where the part's motion puts it to within this share of the inlier limit.
+constexpr double kDeviation = 0.5;
 constexpr int kRounds = 4;
 constexpr int kFitRounds = 3;
 constexpr double kRotationSupport = 0.5;  // a patch's turn is known from its own few readings only
@@ -30,7 +32,7 @@ PatchSet grow(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, 
   PatchSet set;
   set.add(seed);
   queue[tail++] = static_cast<std::uint8_t>(seed);
-  const double most = 0.5 * limit;
+  const double most = kDeviation * limit;
   while (head < tail) {
     const std::size_t p = queue[head++];
     for (std::size_t q = 0; q < patches.count; ++q) {
@@ -76,6 +78,37 @@ std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::i
     seeds[place] = p;
   }
   return count;
+}
+
+/// A part moved by more than this share of the inlier limit, in the mean square.
+constexpr double kMoved = 0.6;
+
+/// A part explains more than half of what moved about it: around a joint that is all but the skin there. Of
+/// what bends, one motion explains a piece.
+constexpr double kMostOfWhatMoved = 0.5;
+
+/// Share of what moved farther than grow() lets a part deviate, connected with the part, that is of the part.
+double explained_share(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
+                       const RigidTransform& region, const Attempt& attempt, double limit) noexcept {
+  std::array<std::uint8_t, kMaxPatches> queue{};
+  std::size_t head = 0, tail = 0;
+  PatchSet reached = attempt.set;
+  double all = attempt.points;
+  const double least = kDeviation * limit;
+  for (std::size_t p = 0; p < patches.count; ++p)
+    if (attempt.set.has(p)) queue[tail++] = static_cast<std::uint8_t>(p);
+  while (head < tail) {
+    const std::size_t p = queue[head++];
+    for (std::size_t q = 0; q < patches.count; ++q) {
+      if (!patches.neighbours[p].has(q) || reached.has(q) || !counts(warp, q, k) ||
+          patch_deviation(patches, warp, q, region) < least * least)
+        continue;
+      reached.add(q);
+      all += warp.seen[q];
+      queue[tail++] = static_cast<std::uint8_t>(q);
+    }
+  }
+  return attempt.points / all;
 }
 
 }  // namespace
@@ -126,7 +159,7 @@ RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp, co
 bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
                      const RigidTransform& region, const PartSearchSettings& settings,
                      RigidPart& part) noexcept {
-  const double moved = 0.6 * settings.limit;
+  const double moved = kMoved * settings.limit;
   std::array<std::size_t, kSeeds> seeds{};
   const std::size_t seed_count = pick_seeds(patches, warp, k, region, moved, seeds);
   double best = 0;
@@ -143,7 +176,9 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
     if (attempt.points < settings.fewest_points) continue;
     const double own = std::sqrt(attempt.own / attempt.points),
                  off = std::sqrt(attempt.region / attempt.points);
-    if (off < moved || off < 2 * own || attempt.region - attempt.own <= best) continue;
+    if (off < moved || off < 2 * own || attempt.region - attempt.own <= best ||
+        explained_share(patches, warp, k, region, attempt, settings.limit) < kMostOfWhatMoved)
+      continue;
     best = attempt.region - attempt.own;
     part.patches = attempt.set;
     part.pose = attempt.pose;
