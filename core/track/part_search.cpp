@@ -87,6 +87,20 @@ constexpr double kMoved = 0.6;
 /// what bends, one motion explains a piece.
 constexpr double kMostOfWhatMoved = 0.5;
 
+/// Does less than half of the region, as far as it is seen, stand where the region is? Then it has lost its
+/// hold on the object, and any rigid part is a better one.
+bool lost_hold(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, const RigidTransform& region,
+               double limit) noexcept {
+  const double most = kDeviation * limit;
+  double all = 0, stands = 0;
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    if (!counts(warp, p, k)) continue;
+    all += warp.seen[p];
+    if (patch_deviation(patches, warp, p, region) <= most * most) stands += warp.seen[p];
+  }
+  return 2 * stands < all;
+}
+
 /// Share of what moved farther than grow() lets a part deviate, connected with the part, that is of the part.
 double explained_share(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
                        const RigidTransform& region, const Attempt& attempt, double limit) noexcept {
@@ -162,6 +176,7 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
   const double moved = kMoved * settings.limit;
   std::array<std::size_t, kSeeds> seeds{};
   const std::size_t seed_count = pick_seeds(patches, warp, k, region, moved, seeds);
+  const bool adrift = lost_hold(patches, warp, k, region, settings.limit);
   double best = 0;
   for (std::size_t s = 0; s < seed_count; ++s) {
     Attempt attempt;
@@ -177,7 +192,7 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
     const double own = std::sqrt(attempt.own / attempt.points),
                  off = std::sqrt(attempt.region / attempt.points);
     if (off < moved || off < 2 * own || attempt.region - attempt.own <= best ||
-        explained_share(patches, warp, k, region, attempt, settings.limit) < kMostOfWhatMoved)
+        (!adrift && explained_share(patches, warp, k, region, attempt, settings.limit) < kMostOfWhatMoved))
       continue;
     best = attempt.region - attempt.own;
     part.patches = attempt.set;
