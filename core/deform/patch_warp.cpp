@@ -245,7 +245,9 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   for (std::size_t p = 0; p < patches.count; ++p)
     if (moving[p])
       warp.pose[p] = steadied(before[p], warp.pose[p], patches.centres[p], 0.5 * patches.radius,
-                              kNoiseOfPose * noise, least_share(points.frames));
+                              kNoiseOfPose * noise, warp.steps[p], least_share(points.frames));
+    else
+      warp.steps[p] = StepMemory();
   find_rigid(patches, regions, warp);
   place_patches(model, patches, warp);
 }

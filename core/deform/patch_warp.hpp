@@ -27,13 +27,18 @@ struct PatchWarp {
   std::array<bool, kMaxPatches> held{};          ///< is in this frame where its region puts it
   std::array<bool, kMaxPatches> rigid{};  ///< it and its neighbours are exactly where one region puts them
 
+  std::array<StepMemory, kMaxPatches> steps;  ///< of each patch
+
   // scratch
   std::array<PlaneMoments, kMaxPatches> moments;
   std::array<FixedPose, kMaxPatches> fixed;
   std::array<IntPoint, kMaxPatches> centre;
   ElasticSystem system;
 
-  void reset(const RigidTransform& all) noexcept { pose.fill(all); }
+  void reset(const RigidTransform& all) noexcept {
+    pose.fill(all);
+    steps.fill(StepMemory());
+  }
 };
 
 /// Takes the patches along with the motion of their regions since the last frame, then lets them follow the

@@ -2,20 +2,31 @@
 
 #include <algorithm>
 
+#include "core/track/model_tables.hpp"
+
 namespace pliant {
 
+namespace {
+
+/// Weight of the latest step in the mean: noise of single steps leaves a quarter of itself in it.
+constexpr double kLatest = 1.0 / 8;
+
+double share_of_motion(double squared, double noise) noexcept {
+  return squared > 0 ? squared / (squared + noise * noise) : 0;
+}
+
+}  // namespace
+
 RigidTransform steadied(const RigidTransform& before, const RigidTransform& after, const Vector3& centre,
-                        double half_radius, double noise, double least) noexcept {
+                        double half_radius, double noise, StepMemory& memory, double least) noexcept {
   const Vector3 at = before * centre;
-  const RigidTransform step = after * before.inverse();
-  const Vector3 turn = small_vector_from_rotation(step.rotation);
-  const Vector3 shift = step * at - at;
-  const double squared = shift.squaredNorm() + turn.squaredNorm() * half_radius * half_radius;
-  const double share = std::max(squared > 0 ? squared / (squared + noise * noise) : 0, least);
-  RigidTransform part;
-  part.rotation = rotation_from_small_vector(share * turn);
-  part.translation = at + share * shift - part.rotation * at;
-  RigidTransform out = part * before;
+  const Vector6 x = motion_between(after, before, at);
+  Vector6 step = x;
+  step.head<3>() *= half_radius;
+  memory.mean += kLatest * (step - memory.mean);
+  const double share = std::max({share_of_motion(step.squaredNorm(), 3 * noise),
+                                 share_of_motion(memory.mean.squaredNorm(), noise), least});
+  RigidTransform out = motion_about(share * x, at) * before;
   out.rotation = orthonormalised(out.rotation);
   return out;
 }
@@ -27,8 +38,8 @@ void hold_steady(const ModelTables& model, const Surface& surface, std::int32_t 
     if (!region.alive) continue;
     const double depth = (region.last_pose * model.centre).z() * kUnitsPerMetre;
     const double noise = kNoiseOfPose * surface.sigma(static_cast<std::int32_t>(depth)) / kUnitsPerMetre;
-    region.pose =
-        steadied(region.last_pose, region.pose, model.centre, half_radius, noise, least_share(frames));
+    region.pose = steadied(region.last_pose, region.pose, model.centre, half_radius, noise, region.steps,
+                           least_share(frames));
   }
 }
 

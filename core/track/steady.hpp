@@ -1,20 +1,21 @@
 // What stands still is held still: noise alone moves nothing.
 #pragma once
 
-#include "core/track/model_tables.hpp"
 #include "core/track/track_state.hpp"
 
 namespace pliant {
 
-/// The part of the motion from `before` to `after` that noise does not explain: a share s² / (s² + noise²) of
-/// it, s being how far it moves a body of radius 2 · `half_radius` about `centre` (model frame, metres) in
-/// the root mean square; but no less than `least`. Lags by less than the noise behind steady motion.
-[[nodiscard]] RigidTransform steadied(const RigidTransform& before, const RigidTransform& after,
-                                      const Vector3& centre, double half_radius, double noise,
-                                      double least = 0) noexcept;
-
 /// How much of the sensor's σ is left in a pose from many readings.
 inline constexpr double kNoiseOfPose = 0.5;
+
+/// The part of the motion from `before` to `after` that noise does not explain: a share s² / (s² + n²) of it,
+/// s being how far it moves a body of radius 2 · `half_radius` about `centre` (model frame, metres) in the
+/// root mean square. n is three times `noise` for this step alone, beyond what noise reaches, and `noise` for
+/// the mean of the last steps; the larger share counts, and no less than `least`. Lags by no more than the
+/// noise behind steady motion.
+[[nodiscard]] RigidTransform steadied(const RigidTransform& before, const RigidTransform& after,
+                                      const Vector3& centre, double half_radius, double noise,
+                                      StepMemory& memory, double least = 0) noexcept;
 
 /// The least share of a motion that counts in the first frames after the object was taken up: as in a mean
 /// over them, since the place that it was taken up in is a coarse one. `frames` as in PointState.

@@ -6,12 +6,18 @@
 #include <span>
 
 #include "core/camera/surface.hpp"
-#include "core/geometry/rigid_transform.hpp"
+#include "core/geometry/vector6.hpp"
 #include "core/limits.hpp"
 #include "core/track/model_tables.hpp"
 #include "core/track_result.hpp"
 
 namespace pliant {
+
+/// What is remembered of a pose's steps: their mean over some frames, the latest counting most, turn times
+/// half radius and shift, metres. Noise cancels in it, motion does not.
+struct StepMemory {
+  Vector6 mean = Vector6::Zero();
+};
 
 /// A region that is followed. Its slot in RegionSet is its id.
 struct TrackedRegion {
@@ -27,6 +33,7 @@ struct TrackedRegion {
   std::int32_t scale = 0;      ///< robust spread of its residuals, 1/16 mm
   double rms = 0;              ///< metres
   int frames_unseen = 0;       ///< frames in a row without enough readings
+  StepMemory steps;            ///< of its pose
 };
 
 using RegionSet = std::array<TrackedRegion, limits::kMaxRegions>;

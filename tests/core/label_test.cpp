@@ -107,6 +107,30 @@ TEST_F(Label, WhatTheCameraSeesThroughIsDeformedAfterClearEvidence) {
   EXPECT_EQ(labels().count(kDeformed), 0U);
 }
 
+TEST_F(Label, WhatOnlyTurnedIntoSightIsNotDeformed) {
+  // the warp has the body turned a little about itself, as it is seen; its region does not
+  const Vector3 at = usual_pose() * scene().tables.centre;
+  const Matrix3 turn = synthetic::turn({0, 1, 0}, 0.035);
+  const RigidTransform seen = RigidTransform{turn, at - turn * at} * usual_pose();
+  scene().see_body(seen);
+  PatchWarp& warp = *scene().warp;
+  warp.reset(seen);
+  warp.home.fill(0);
+  warp.rigid.fill(false);
+  for (FixedPose& fixed : warp.fixed) fixed = FixedPose(seen, scene().tables.centre);
+  for (int frame = 0; frame < 5; ++frame) (void)scene().look_now();
+  const FixedPose region(usual_pose(), scene().tables.centre);
+  const ModelTables& model = scene().tables;
+  std::size_t turned = 0;
+  for (std::size_t i = 0; i < model.size; ++i) {
+    if (scene().points.sight[i] != Sight::agrees) continue;
+    const IntPoint p = region.point(model.x[i], model.y[i], model.z[i]);
+    turned += faces_camera(p, region.direction(model.nx[i], model.ny[i], model.nz[i]), 0) ? 0U : 1U;
+    EXPECT_EQ(scene().points.label[i], 0);
+  }
+  EXPECT_GE(turned, 3U);
+}
+
 TEST_F(Label, NothingIsObservedInAnEmptyPicture) {
   Picture picture(scene().camera);
   scene().see(picture);

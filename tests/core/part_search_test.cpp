@@ -1,0 +1,83 @@
+#include "core/track/part_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/track_scene.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::TrackScene;
+using synthetic::usual_pose;
+
+constexpr double kLimit = 0.004;
+
+/// A bar along x whose patches the warp has turned about the y axis.
+class PartSearch : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar()); }
+  static void TearDownTestSuite() { shared_.reset(); }
+  static TrackScene& scene() { return *shared_; }
+
+  /// Where the bar is at x: the middle line bends by `curvature(x)` radians a metre.
+  template <typename Curvature>
+  bool find(const Curvature& curvature) {
+    PatchWarp& warp = *scene().warp;
+    warp.reset(usual_pose());
+    warp.home.fill(0);
+    for (std::size_t p = 0; p < scene().patches.count; ++p) {
+      const double end = scene().patches.centres[p].x();
+      Vector3 line = Vector3::Zero();
+      double angle = 0;
+      constexpr double kStep = 0.0005;
+      for (double x = 0; std::fabs(x) < std::fabs(end); x += end > 0 ? kStep : -kStep) {
+        const double step = end > 0 ? kStep : -kStep;
+        angle += curvature(x) * step;
+        line += step * Vector3(std::cos(angle), 0, -std::sin(angle));
+      }
+      RigidTransform bent;
+      bent.rotation = synthetic::turn({0, 1, 0}, angle);
+      bent.translation = line - bent.rotation * Vector3(end, 0, 0);
+      warp.pose[p] = usual_pose() * bent;
+      warp.seen[p] = scene().patches.sizes[p];
+    }
+    PartSearchSettings settings;
+    settings.limit = kLimit;
+    return find_rigid_part(scene().patches, warp, 0, usual_pose(), settings, part_);
+  }
+
+  RigidPart part_;
+
+ private:
+  static std::unique_ptr<TrackScene> shared_;
+};
+std::unique_ptr<TrackScene> PartSearch::shared_;
+
+TEST_F(PartSearch, FindsWhatTurnsAtAJoint) {
+  // 0.3 radians within 2 cm
+  ASSERT_TRUE(find([](double x) { return x > 0.05 && x < 0.07 ? 15.0 : 0.0; }));
+  for (std::size_t p = 0; p < scene().patches.count; ++p) {
+    const double x = scene().patches.centres[p].x();
+    if (x < 0.05 || x > 0.09) {
+      EXPECT_EQ(part_.patches.has(p), x > 0.09) << x;
+    }
+  }
+}
+
+TEST_F(PartSearch, APieceOfABendIsNoPart) {
+  // the end moves by about 3 cm: several of its pieces would fit a motion of their own
+  EXPECT_FALSE(find([](double x) { return x > 0.02 ? 4.0 : 0.0; }));
+}
+
+TEST_F(PartSearch, APieceIsBetterThanARegionThatHasLostItsHold) {
+  EXPECT_TRUE(find([](double x) { return std::fabs(x) > 0.01 ? 4.0 : 0.0; }));
+}
+
+TEST_F(PartSearch, FindsNothingWhereNothingMoved) {
+  EXPECT_FALSE(find([](double) { return 0.0; }));
+}
+
+}  // namespace
+}  // namespace pliant
