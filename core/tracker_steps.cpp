@@ -9,6 +9,7 @@
 #include "core/track/borders.hpp"
 #include "core/track/joints.hpp"
 #include "core/track/predict.hpp"
+#include "core/track/regain_hold.hpp"
 #include "core/track/steady.hpp"
 #include "core/track/undecided.hpp"
 #include "core/tracker_state.hpp"
@@ -108,6 +109,7 @@ void warp_surface(TrackerState& s) noexcept {
   settings.outward = kMotionGate / 2;  // a finger stands before the surface, a dent never does
   warp_patches(s.tables, s.patches, s.surface, s.projector, s.tolerance, s.regions, settings, s.points,
                s.warp);
+  regain_hold(s.tables, s.patches, s.warp, s.tolerance, s.regions[0], s.points);
 }
 
 void label_points(TrackerState& s) noexcept {

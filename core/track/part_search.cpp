@@ -87,20 +87,6 @@ constexpr double kMoved = 0.6;
 /// what bends, one motion explains a piece.
 constexpr double kMostOfWhatMoved = 0.5;
 
-/// Does less than half of the region, as far as it is seen, stand where the region is? Then it has lost its
-/// hold on the object, and any rigid part is a better one.
-bool lost_hold(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, const RigidTransform& region,
-               double limit) noexcept {
-  const double most = kDeviation * limit;
-  double all = 0, stands = 0;
-  for (std::size_t p = 0; p < patches.count; ++p) {
-    if (!counts(warp, p, k)) continue;
-    all += warp.seen[p];
-    if (patch_deviation(patches, warp, p, region) <= most * most) stands += warp.seen[p];
-  }
-  return 2 * stands < all;
-}
-
 /// Share of what moved farther than grow() lets a part deviate, connected with the part, that is of the part.
 double explained_share(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
                        const RigidTransform& region, const Attempt& attempt, double limit) noexcept {
@@ -134,6 +120,19 @@ double patch_deviation(const PatchTables& patches, const PatchWarp& warp, std::s
   // points of a disc turn by radius / 2 times the angle in the mean square
   const double turn = (own.rotation - pose.rotation).squaredNorm() * 0.5;
   return shift + kRotationSupport * 0.25 * patches.radius * patches.radius * turn;
+}
+
+Hold hold_of(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, const RigidTransform& pose,
+             double limit) noexcept {
+  Hold hold;
+  for (std::size_t p = 0; p < patches.count; ++p) {
+    if (!counts(warp, p, k)) continue;
+    hold.seen += warp.seen[p];
+    if (patch_deviation(patches, warp, p, pose) > kDeviation * kDeviation * limit * limit) continue;
+    hold.standing += warp.seen[p];
+    hold.patches.add(p);
+  }
+  return hold;
 }
 
 RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp, const PatchSet& set,
@@ -176,7 +175,7 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
   const double moved = kMoved * settings.limit;
   std::array<std::size_t, kSeeds> seeds{};
   const std::size_t seed_count = pick_seeds(patches, warp, k, region, moved, seeds);
-  const bool adrift = lost_hold(patches, warp, k, region, settings.limit);
+  const bool adrift = hold_of(patches, warp, k, region, settings.limit).lost();
   double best = 0;
   for (std::size_t s = 0; s < seed_count; ++s) {
     Attempt attempt;

@@ -32,6 +32,18 @@ struct RigidPart {
 [[nodiscard]] RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp,
                                          const PatchSet& set, const RigidTransform& start) noexcept;
 
+/// What of a region, as far as it is seen, stands where a pose puts it: within half of the inlier limit.
+struct Hold {
+  double seen = 0, standing = 0;  ///< weighted readings
+  PatchSet patches;               ///< that stand
+
+  /// Less than half: any rigid part is a better hold on the object.
+  [[nodiscard]] bool lost() const noexcept { return 2 * standing < seen; }
+};
+
+[[nodiscard]] Hold hold_of(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
+                           const RigidTransform& pose, double limit) noexcept;
+
 /// Has enough been seen of patch `p` for its motion to count?
 [[nodiscard]] inline bool patch_counts(const PatchWarp& warp, std::size_t p) noexcept {
   return warp.seen[p] >= 3;
