@@ -124,7 +124,7 @@ class FrameDetector {
   void judge(PoseCandidate& candidate, std::size_t count, double floor) noexcept;
   /// The best pose with all that speaks for and against it.
   [[nodiscard]] Detection best_so_far() noexcept;
-  void decide() noexcept;
+  void decide(const Detection& best) noexcept;
   /// Enough of this round's keypoints on the posed model have their best match near the right place.
   [[nodiscard]] bool supported(const RigidTransform& pose) const noexcept;
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kCloseLookPoints = 192;
 constexpr std::size_t kAlignPoints = 416;  // full refinement
-constexpr std::size_t kLikenessPoints = 128;
+constexpr std::size_t kLikenessPoints = 64;
 constexpr std::size_t kMostChallenges = 3;  // in a round: one after another of what turns out to be plain
 constexpr double kLooksAlike = 0.9;         // of the model, on itself: but for a cup's handle
 
@@ -100,11 +100,13 @@ std::int64_t FrameDetector::slice_settle() noexcept {
       if (close.score > 0.5 * candidate.score) candidate = close;
       candidate.score = score;
       candidate.settled = true;
-      took = 2300;
+      return 2300;
     }
   }
   if (cursor_ >= finalists_.all().size()) {
+    const std::uint64_t before = work_;
     const Detection best = best_so_far();
+    took += static_cast<std::int64_t>((work_ - before) / 1000);
     if (best.score > 0 && is_plain(best)) {
       // The object may stand beside it.
       finalists_.dismiss(best);
@@ -116,7 +118,7 @@ std::int64_t FrameDetector::slice_settle() noexcept {
       phase_ = Phase::challenge;
       cursor_ = 0;
     } else {
-      decide();
+      decide(best);
     }
   }
   return took;
@@ -165,6 +167,7 @@ Detection FrameDetector::best_so_far() noexcept {
   if (best.score <= 0) return best;
   work_ += work::kPlainBody;
   best.plain = plain_body_fit(probe_, snapshot_, best.pose, kEvidencePoints, fine_, widest_);
+  if (!best.plain.quadric_is_nearer()) return best;  // otherwise it is not asked for
   const RigidTransform back = best.pose.inverse();
   best.other = finalists_.best_twin(best, [&](const RigidTransform& pose) {
     work_ += work::kSelfLikeness;
@@ -173,8 +176,8 @@ Detection FrameDetector::best_so_far() noexcept {
   return best;
 }
 
-void FrameDetector::decide() noexcept {
-  best_ = best_so_far();
+void FrameDetector::decide(const Detection& best) noexcept {
+  best_ = best;
   const Verdict verdict = verdict_on(best_);
   const bool all_described = order_next_ >= order_count_;
   const bool last = round_ + 1 >= settings_.rounds || all_described;

@@ -16,7 +16,7 @@ struct Detection {
   double rival = -10;     ///< of the best pose at another place: more than the model's radius away
   double twin = -10;      ///< of the best pose at the same place in another attitude: near `score` for a
                           ///< symmetric object, whose attitude is then one of several
-  double other = -10;     ///< the same, of attitudes in which the model looks different
+  double other = -10;     ///< the same, of attitudes in which the model looks different; where `plain` asks
   PoseEvidence evidence;  ///< over kEvidencePoints model points
   double seamless = 0;    ///< SeamEvidence::share()
   PlainBodyFit plain;     ///< of the readings on it

@@ -23,8 +23,8 @@ inline constexpr std::uint64_t kProbeStep = 90;         // of a step of a pose's
 inline constexpr std::uint64_t kSolve = 2000;           // of such a step, once
 inline constexpr std::uint64_t kProbeLook = 90;         // of a look at a pose, a point
 inline constexpr std::uint64_t kSeam = 80000;           // of what lies around a pose
-inline constexpr std::uint64_t kPlainBody = 600000;     // of the plain bodies where a pose is
-inline constexpr std::uint64_t kSelfLikeness = 800000;  // of the model moved against itself
+inline constexpr std::uint64_t kPlainBody = 3500000;    // of the plain bodies where a pose is
+inline constexpr std::uint64_t kSelfLikeness = 500000;  // of the model moved against itself
 }  // namespace work
 
 }  // namespace pliant
