@@ -197,6 +197,7 @@ std::int64_t FrameDetector::slice_sample() noexcept {
 void FrameDetector::begin_round() noexcept {
   phase_ = Phase::describe;
   challenged_ = false;
+  challenges_ = 0;
   cursor_ = 0;
   key_count_ = 0;
 }

@@ -122,7 +122,9 @@ class FrameDetector {
   void fill_shortlist() noexcept;
   void try_pose(const RigidTransform& pose) noexcept;
   void judge(PoseCandidate& candidate, std::size_t count, double floor) noexcept;
-  void decide() noexcept;
+  /// The best pose with all that speaks for and against it.
+  [[nodiscard]] Detection best_so_far() noexcept;
+  void decide(const Detection& best) noexcept;
   /// Enough of this round's keypoints on the posed model have their best match near the right place.
   [[nodiscard]] bool supported(const RigidTransform& pose) const noexcept;
 
@@ -172,8 +174,9 @@ class FrameDetector {
   std::array<std::uint32_t, kVoted> voted_;  // the best-voted poses
   std::array<Proposal, kVoted> looks_;       // a quick look at each; scene: its place in voted_
   std::array<RigidTransform, kShortlist> shortlist_;
-  RigidTransform challenge_;  // the best pose, of which other attitudes are tried
-  bool challenged_ = false;   // in this round
+  RigidTransform challenge_;    // the best pose, of which other attitudes are tried
+  bool challenged_ = false;     // the best pose of this round
+  std::size_t challenges_ = 0;  // in this round
   Detection best_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "core/detect/frame_detector.hpp"
 #include "core/detect/seam.hpp"
+#include "core/detect/self_likeness.hpp"
 #include "core/detect/work.hpp"
 
 namespace pliant {
@@ -12,6 +13,9 @@ namespace {
 
 constexpr std::size_t kCloseLookPoints = 192;
 constexpr std::size_t kAlignPoints = 416;  // full refinement
+constexpr std::size_t kLikenessPoints = 64;
+constexpr std::size_t kMostChallenges = 3;  // in a round: one after another of what turns out to be plain
+constexpr double kLooksAlike = 0.9;         // of the model, on itself: but for a cup's handle
 
 // What scores so low that clutter reaches it must have the descriptors on its side: of the keypoints that lie
 // on the object, so many have their best match near the right place. By chance about one in a hundred has, on
@@ -96,17 +100,25 @@ std::int64_t FrameDetector::slice_settle() noexcept {
       if (close.score > 0.5 * candidate.score) candidate = close;
       candidate.score = score;
       candidate.settled = true;
-      took = 2300;
+      return 2300;
     }
   }
   if (cursor_ >= finalists_.all().size()) {
-    const Detection best = finalists_.best();
-    if (!challenged_ && best.score > 0 && !verdict_on(best).certain) {
+    const std::uint64_t before = work_;
+    const Detection best = best_so_far();
+    took += static_cast<std::int64_t>((work_ - before) / 1000);
+    if (best.score > 0 && is_plain(best)) {
+      // The object may stand beside it.
+      finalists_.dismiss(best);
+      challenged_ = challenges_ >= kMostChallenges;
+      cursor_ = 0;
+    } else if (!challenged_ && best.score > 0 && needs_other_attitudes(best)) {
       challenge_ = best.pose;
+      ++challenges_;
       phase_ = Phase::challenge;
       cursor_ = 0;
     } else {
-      decide();
+      decide(best);
     }
   }
   return took;
@@ -150,8 +162,22 @@ bool FrameDetector::supported(const RigidTransform& pose) const noexcept {
          static_cast<double>(supporters) >= kLeastSupport * static_cast<double>(on);
 }
 
-void FrameDetector::decide() noexcept {
-  best_ = finalists_.best();
+Detection FrameDetector::best_so_far() noexcept {
+  Detection best = finalists_.best();
+  if (best.score <= 0) return best;
+  work_ += work::kPlainBody;
+  best.plain = plain_body_fit(probe_, snapshot_, best.pose, kEvidencePoints, fine_, widest_);
+  if (!best.plain.quadric_is_nearer()) return best;  // otherwise it is not asked for
+  const RigidTransform back = best.pose.inverse();
+  best.other = finalists_.best_twin(best, [&](const RigidTransform& pose) {
+    work_ += work::kSelfLikeness;
+    return self_likeness(model_, back * pose, kLikenessPoints, fine_) < kLooksAlike;
+  });
+  return best;
+}
+
+void FrameDetector::decide(const Detection& best) noexcept {
+  best_ = best;
   const Verdict verdict = verdict_on(best_);
   const bool all_described = order_next_ >= order_count_;
   const bool last = round_ + 1 >= settings_.rounds || all_described;

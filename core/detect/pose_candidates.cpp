@@ -53,6 +53,10 @@ bool PoseCandidates::same_place(const RigidTransform& a, const RigidTransform& b
 }
 
 void PoseCandidates::keep(const PoseCandidate& candidate) noexcept {
+  for (const PoseCandidate& held : all()) {
+    const Vector3 apart = candidate.pose * centre_ - held.pose * centre_;
+    if (held.dismissed && candidate.score <= held.score && apart.dot(apart) < radius_ * radius_) return;
+  }
   for (PoseCandidate& held : all())
     if (same_place(held.pose, candidate.pose)) {
       if (candidate.score > held.score) held = candidate;
@@ -77,25 +81,65 @@ double PoseCandidates::floor() const noexcept {
 
 Detection PoseCandidates::best() const noexcept {
   Detection best;
-  if (count_ == 0) return best;
-  std::size_t first = 0;
-  for (std::size_t k = 1; k < count_; ++k)
-    if (held_[k].score > held_[first].score) first = k;
-  best.pose = held_[first].pose;
-  best.score = held_[first].score;
-  best.evidence = held_[first].evidence;
-  best.seamless = held_[first].seamless;
-  const double left = best.evidence.unexplained() + kSurelyUnexplained;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const PoseCandidate& other = held_[k];
-    if (k == first || same_place(other.pose, best.pose)) continue;
-    const Vector3 apart = other.pose * centre_ - best.pose * centre_;
-    double& against = apart.dot(apart) < radius_ * radius_ ? best.twin : best.rival;
-    // What fits less closely speaks less against it.
-    const double weight = std::min(1.0, left / (other.evidence.unexplained() + kSurelyUnexplained));
-    against = std::max(against, other.score > 0 ? other.score * weight : other.score);
+  const PoseCandidate* first = nullptr;
+  for (const PoseCandidate& held : all())
+    if (!held.dismissed && (first == nullptr || held.score > first->score)) first = &held;
+  if (first == nullptr) return best;
+  best.pose = first->pose;
+  best.score = first->score;
+  best.evidence = first->evidence;
+  best.seamless = first->seamless;
+  for (const PoseCandidate& other : all()) {
+    if (same_place(other.pose, best.pose)) continue;
+    const bool here = stands_at(other, best);
+    if (other.dismissed && !here) continue;  // what stands elsewhere is something else
+    double& against = here ? best.twin : best.rival;
+    against = std::max(against, weight_against(other, best));
   }
   return best;
+}
+
+void PoseCandidates::dismiss(const Detection& best) noexcept {
+  std::size_t kept = 0;
+  for (PoseCandidate& held : all()) {
+    if (!held.dismissed && stands_at(held, best)) continue;
+    held.dismissed = held.dismissed || same_place(held.pose, best.pose);
+    held_[kept++] = held;
+  }
+  count_ = kept;
+}
+
+bool PoseCandidates::stands_at(const PoseCandidate& other, const Detection& best) const noexcept {
+  const Vector3 apart = other.pose * centre_ - best.pose * centre_;
+  return apart.dot(apart) < radius_ * radius_ && !same_place(other.pose, best.pose);
+}
+
+double PoseCandidates::weight_against(const PoseCandidate& other, const Detection& best) noexcept {
+  const double left = best.evidence.unexplained() + kSurelyUnexplained;
+  const double weight = std::min(1.0, left / (other.evidence.unexplained() + kSurelyUnexplained));
+  return other.score > 0 ? other.score * weight : other.score;
+}
+
+namespace {
+
+/// Fits nearly as well in an attitude in which it looks different.
+bool fits_otherwise(const Detection& detection) noexcept {
+  return detection.other > kRivalShare * detection.score;
+}
+
+}  // namespace
+
+bool is_plain(const Detection& detection) noexcept {
+  const PlainBodyFit& fit = detection.plain;
+  // What is flat is bent by a sensor's fixed errors, within its noise: that is no ball. And several pieces
+  // fit a lot, if not closely, of what is dented or noisy; but a box fits in several attitudes.
+  return (fit.quadric_is_nearer() && (fit.model > fit.noise || fits_otherwise(detection))) ||
+         fit.pieces_explain() || (fit.faces_are_nearer() && detection.twin > kRivalShare * detection.score);
+}
+
+bool needs_other_attitudes(const Detection& detection) noexcept {
+  return detection.score < kCertain || detection.plain.quadric_is_nearer() ||
+         detection.plain.faces_are_nearer();
 }
 
 Verdict verdict_on(const Detection& detection) noexcept {
@@ -105,16 +149,17 @@ Verdict verdict_on(const Detection& detection) noexcept {
   // fits in another attitude.
   const double doubt = detection.evidence.unexplained() +
                        (detection.score > 0 ? std::max(detection.twin, 0.0) / detection.score : 0);
-  const bool itself = doubt <= kMostDoubt || detection.score >= kBeyondDoubt;
+  const bool plain = is_plain(detection);
+  const bool itself = !plain && (doubt <= kMostDoubt || detection.score >= kBeyondDoubt);
   Verdict verdict;
   verdict.certain = detection.score >= kCertain;
   verdict.likely = itself && detection.score >= kLikely && lone && in_sight;
   verdict.convincing =
       itself &&
       (verdict.certain || (verdict.likely && (detection.score >= kConvincing || doubt <= kClearDoubt)));
-  verdict.again = doubt <= kDoubtOfOne && lone && in_sight && detection.score >= kLastResort;
-  verdict.clear = doubt <= kClearDoubt && lone && in_sight && detection.score >= kClear;
-  verdict.last_resort = verdict.clear || (detection.evidence.unexplained() <= kLittleUnexplained &&
+  verdict.again = !plain && doubt <= kDoubtOfOne && lone && in_sight && detection.score >= kLastResort;
+  verdict.clear = !plain && doubt <= kClearDoubt && lone && in_sight && detection.score >= kClear;
+  verdict.last_resort = verdict.clear || (!plain && detection.evidence.unexplained() <= kLittleUnexplained &&
                                           detection.twin <= kLittleTwin * detection.score && lone &&
                                           in_sight && detection.score >= kLastResort);
   return verdict;

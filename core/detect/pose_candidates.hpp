@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 
+#include "core/detect/plain_body.hpp"
 #include "core/detect/pose_evidence.hpp"
 
 namespace pliant {
@@ -15,8 +16,10 @@ struct Detection {
   double rival = -10;     ///< of the best pose at another place: more than the model's radius away
   double twin = -10;      ///< of the best pose at the same place in another attitude: near `score` for a
                           ///< symmetric object, whose attitude is then one of several
+  double other = -10;     ///< the same, of attitudes in which the model looks different; where `plain` asks
   PoseEvidence evidence;  ///< over kEvidencePoints model points
   double seamless = 0;    ///< SeamEvidence::share()
+  PlainBodyFit plain;     ///< of the readings on it
 };
 
 /// A pose that was looked at closely.
@@ -25,7 +28,8 @@ struct PoseCandidate {
   double score = -10;
   PoseEvidence evidence;
   double seamless = 0;
-  bool settled = false;  ///< refined in full
+  bool settled = false;    ///< refined in full
+  bool dismissed = false;  ///< something plain stands there
 };
 
 /// A few distinct poses, the better one of each place.
@@ -44,8 +48,25 @@ class PoseCandidates {
   /// The best one, with what speaks against it: poses that came to it while being refined are no rivals of
   /// its.
   [[nodiscard]] Detection best() const noexcept;
+  /// Drops the poses at the place of `best` and sets it aside: best() is of the others, and what scores less
+  /// at its place is no longer kept.
+  void dismiss(const Detection& best) noexcept;
+  /// Of the poses that Detection::twin is of, the best one of which `differs(pose)` says that it counts; -10
+  /// without one.
+  template <typename Differs>
+  [[nodiscard]] double best_twin(const Detection& best, Differs&& differs) const noexcept {
+    double strongest = -10;
+    for (const PoseCandidate& other : all())
+      if (stands_at(other, best) && weight_against(other, best) > strongest && differs(other.pose))
+        strongest = weight_against(other, best);
+    return strongest;
+  }
 
  private:
+  /// At the place of `best`, but in another attitude.
+  [[nodiscard]] bool stands_at(const PoseCandidate& other, const Detection& best) const noexcept;
+  /// What the other one's score says against `best`: what fits less closely speaks less against it.
+  [[nodiscard]] static double weight_against(const PoseCandidate& other, const Detection& best) noexcept;
   [[nodiscard]] bool same_place(const RigidTransform& a, const RigidTransform& b) const noexcept;
 
   Vector3 centre_ = Vector3::Zero();
@@ -63,6 +84,10 @@ struct Verdict {
   bool clear = false;        ///< once every keypoint was tried: noise explains it, and nothing else fits
   bool last_resort = false;  ///< once every keypoint was tried and the descriptors support it
 };
+/// Something plain of the object's size explains the readings better than the object.
+[[nodiscard]] bool is_plain(const Detection& detection) noexcept;
+/// The verdict cannot be given before the best pose's other attitudes were tried.
+[[nodiscard]] bool needs_other_attitudes(const Detection& detection) noexcept;
 [[nodiscard]] Verdict verdict_on(const Detection& detection) noexcept;
 
 }  // namespace pliant

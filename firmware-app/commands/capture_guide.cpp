@@ -24,6 +24,20 @@ std::string sides_missing(const Coverage& coverage) {
   return text;
 }
 
+std::string doubt_of_turning(const CaptureFigures& figures, const Coverage& coverage) {
+  if (2 * figures.featureless <= figures.fused) return "";
+  std::string text =
+      fmt::format("in {} of {} pictures the shape did not tell how the object turned: ", figures.featureless,
+                  figures.fused);
+  // Seen from elsewhere, what is round or flat stands in other pixels; turned on the spot, it does not.
+  text +=
+      coverage.sectors_seen() <= 1
+          ? "one side was seen; if it was turned, that side is smeared. Carry the sensor around it, or put "
+            "something with edges onto it"
+          : "compare the surface (--ply) with the object; its sides may lie turned against each other";
+  return text;
+}
+
 void CaptureGuide::take(const CaptureStatus& status, const Coverage& coverage) {
   status_ = status;
   sectors_ = coverage.sectors_seen();

@@ -61,6 +61,7 @@ int write_captured_model(const CapturedModelOptions& options, const ObjectCaptur
   if (joint.pairs > 0)
     text += fmt::format("views fit each other: within {:.2f} mm, {:.2f} mm before the drift was closed\n",
                         1000 * joint.after, 1000 * joint.before);
+  if (const std::string doubt = doubt_of_turning(figures, coverage); !doubt.empty()) print_warning(doubt);
   const std::string missing = sides_missing(coverage);
   text += fmt::format("seen: {} of {} sides{}\n", coverage.sectors_seen(), Coverage::kSectors,
                       missing.empty() ? "" : "; not " + missing);

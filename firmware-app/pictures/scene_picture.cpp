@@ -93,12 +93,16 @@ void draw_key(const SceneView& view, double most, Canvas& canvas) {
   std::array<int, 256> count{};
   for (const std::int8_t label : view.labels) ++count[static_cast<std::size_t>(label + 128)];
   std::vector<KeyRow> rows;
-  for (int label = 127; label >= kNotObserved; --label) {
+  // The base first, what is not observed last.
+  const auto add = [&](int label) {
     const int n = count[static_cast<std::size_t>(label + 128)];
-    if (n == 0) continue;
-    const char* how = label == kNotObserved ? " points, not drawn" : " points";
-    rows.push_back({fmt::format("{}: {}{}", region_word(label), n, how), label});
-  }
+    if (n == 0) return;
+    rows.push_back({fmt::format("{}: {} {}{}", region_word(label), n, n == 1 ? "point" : "points",
+                                label == kNotObserved ? ", not drawn" : ""),
+                    label});
+  };
+  for (int label = 0; label < 128; ++label) add(label);
+  for (int label = -1; label >= kNotObserved; --label) add(label);
   const bool scale = count[static_cast<std::size_t>(kDeformed + 128)] > 0;
   const std::string scale_words = fmt::format("0 to {:g} mm", 1000 * most);
   constexpr int kBar = 90;

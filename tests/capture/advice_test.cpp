@@ -84,6 +84,22 @@ TEST(CaptureGuide, SaysWhatIsWrong) {
   EXPECT_EQ(advice([](CaptureStatus&) {}), "");
 }
 
+TEST(CaptureGuide, SaysInTheEndWhatAFeaturelessCaptureIsWorth) {
+  CaptureFigures figures;
+  figures.frames = figures.fused = 300;
+  figures.featureless = 20;
+  Coverage front;
+  for (int i = 0; i < 3; ++i) front.add(seen_from(0, -0.6, 0.1));
+  EXPECT_EQ(doubt_of_turning(figures, front), "");
+  figures.featureless = 298;
+  const std::string doubt = doubt_of_turning(figures, front);
+  EXPECT_NE(doubt.find("in 298 of 300 pictures"), std::string::npos) << doubt;
+  EXPECT_NE(doubt.find("smeared"), std::string::npos) << doubt;
+  const std::string round = doubt_of_turning(figures, seen_from_all_but_the_back());
+  EXPECT_EQ(round.find("smeared"), std::string::npos) << round;
+  EXPECT_NE(round.find("compare the surface"), std::string::npos) << round;
+}
+
 TEST(CaptureGuide, DoesNotChatter) {
   CaptureGuide guide(30);
   CaptureStatus fast = fine();

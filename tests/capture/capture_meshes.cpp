@@ -1,7 +1,8 @@
 // Captures any mesh on a simulated turntable or with a carried sensor, and tells how far the captured surface
-// lies off: capture_meshes MESH|bottle DIAGONAL x|y|z "?motion=carried&frames=300" [CAPTURED.ply]. DIAGONAL:
-// metres that the mesh is scaled to, 0 as it is; the letter: the axis of the file that points upwards. The
-// captured surface is written in the frame of MESH.
+// lies off: capture_meshes MESH|bottle DIAGONAL x|y|z "?motion=carried&frames=300" [CAPTURED.ply [MM]].
+// DIAGONAL: metres that the mesh is scaled to, 0 as it is; the letter: the axis of the file that points
+// upwards. The captured surface is written in the frame of MESH ("" for none). MM: further noise of the
+// readings, millimetres (CaptureRun::extra_noise).
 #include <cstdio>
 #include <cstdlib>
 
@@ -59,7 +60,7 @@ Geometry in_frame_of_file(const Geometry& captured, const RigidTransform& standi
 }
 
 int capture_mesh(const std::string& path, double diagonal, int up, const std::string& options,
-                 const std::string& ply) {
+                 const std::string& ply, double extra_noise) {
   Result<Standing> mesh = standing_mesh(path, diagonal, up);
   if (!mesh) {
     std::fprintf(stderr, "capture_meshes: %s\n", mesh.error().message.c_str());
@@ -71,6 +72,7 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
     return 2;
   }
   CaptureRun run;
+  run.extra_noise = 0.001 * extra_noise;
   run.run(**source);
   CapturedMeshSettings cleaning;
   if (const char* const smoothing = std::getenv("CAPTURE_SMOOTHING"))
@@ -97,11 +99,12 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
 }  // namespace pliant::test
 
 int main(int count, char** words) {
-  if (count != 5 && count != 6) {
-    std::fputs("usage: capture_meshes MESH|bottle DIAGONAL x|y|z ?motion=turned&frames=300 [CAPTURED.ply]\n",
-               stderr);
+  if (count < 5 || count > 7) {
+    std::fputs(
+        "usage: capture_meshes MESH|bottle DIAGONAL x|y|z ?motion=turned&frames=300 [CAPTURED.ply [MM]]\n",
+        stderr);
     return 2;
   }
   return pliant::test::capture_mesh(words[1], std::atof(words[2]), words[3][0] - 'x', words[4],
-                                    count > 5 ? words[5] : "");
+                                    count > 5 ? words[5] : "", count > 6 ? std::atof(words[6]) : 0);
 }

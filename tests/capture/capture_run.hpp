@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,10 @@ inline double quantile(std::vector<double> values, double share) {
 /// A capture with its picture of the truth.
 class CaptureRun {
  public:
+  /// Further noise that the frames get before they are taken in, metres: as much that is each reading's own
+  /// as that squares of kNoiseSquare pixels share.
+  double extra_noise = 0;
+
   /// Takes all frames of a simulated source in.
   void run(SimulatedSource& source, const CaptureSettings& settings = {}) {
     block_ = block_of(ObjectCapture::workspace_bytes(source.intrinsics(), source.sensor(), settings));
@@ -73,7 +78,7 @@ class CaptureRun {
     for (;;) {
       source.next(0, item);
       if (item.event != SourceEvent::frame) break;
-      const CaptureStatus& status = capture.process(item.frame);
+      const CaptureStatus& status = capture.process(noisier(item.frame));
       const RigidTransform& true_pose = source.truth().parts.front();
       look(source.truth(), truth, true_pose);
       if (status.state != CaptureState::capturing) continue;
@@ -138,6 +143,27 @@ class CaptureRun {
       shown;  ///< of the true mesh's vertices: seen from within 70° in three frames and more
 
  private:
+  static constexpr int kNoiseSquare = 16;
+  const DepthFrame& noisier(const DepthFrame& frame) {
+    if (extra_noise == 0) return frame;
+    noisy_.assign(frame.depth, frame.depth + std::ptrdiff_t{frame.stride} * frame.height);
+    std::normal_distribution<double> spread(0, 1000 * extra_noise);  // of millimetres
+    std::vector<double> shared(static_cast<std::size_t>(frame.stride / kNoiseSquare + 1));
+    for (int v = 0; v < frame.height; ++v) {
+      if (v % kNoiseSquare == 0)
+        for (double& s : shared) s = spread(random_);
+      for (int u = 0; u < frame.width; ++u) {
+        std::uint16_t& d = noisy_[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.stride) +
+                                  static_cast<std::size_t>(u)];
+        if (d == 0) continue;
+        const double off = shared[static_cast<std::size_t>(u / kNoiseSquare)] + spread(random_);
+        d = static_cast<std::uint16_t>(std::clamp(std::lround(d + off), 1L, 65535L));
+      }
+    }
+    frame_ = frame;
+    frame_.depth = noisy_.data();
+    return frame_;
+  }
   void look(const SimulatedTruth& truth, const Geometry& mesh, const RigidTransform& pose) {
     for (std::size_t i = 0; i < shown.size(); ++i) {
       if (truth.visible[i] == 0 || shown[i] == 255) continue;
@@ -188,6 +214,9 @@ class CaptureRun {
   }
 
   Block block_;
+  std::mt19937 random_{17};
+  std::vector<std::uint16_t> noisy_;
+  DepthFrame frame_;
   std::array<std::uint8_t, 65536> seen_{};
 };
 

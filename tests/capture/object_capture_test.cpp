@@ -3,8 +3,11 @@
 
 #include <cstring>
 
+#include "drivers/simulated/still_mesh.hpp"
+#include "firmware-app/commands/capture_guide.hpp"
 #include "firmware-app/measure/path_cost.hpp"
 #include "tests/capture/capture_run.hpp"
+#include "tests/capture/other_objects.hpp"
 #include "tests/capture/scene.hpp"
 
 namespace pliant::test {
@@ -49,6 +52,14 @@ TEST_F(DrawnCapture, SaysThatTheSensorIsTooNearWhenThereIsNoReading) {
 TEST_F(DrawnCapture, ABallIsCalledFeatureless) {
   for (int i = 0; i < 6; ++i) EXPECT_EQ(show(ball_on_table).state, CaptureState::capturing);
   EXPECT_TRUE(show(ball_on_table).featureless);
+}
+
+TEST(ObjectCapture, ABottleTurnedOnTheSpotIsNotBelieved) {
+  const auto source = open_still_mesh(bottle_with_lugs(), "?motion=turned&frames=60&width=320&height=240");
+  ASSERT_TRUE(source) << source.error().message;
+  CaptureRun run;
+  run.run(**source);
+  EXPECT_NE(doubt_of_turning(run.capture.figures(), run.capture.coverage()), "");
 }
 
 TEST_F(DrawnCapture, ABallFarAwayIsCalledTooFar) {

@@ -74,6 +74,37 @@ TEST(PoseCandidates, ARivalThatNoiseDoesNotExplainWeighsLess) {
   EXPECT_NEAR(all.best().rival, 0.5 * 0.04 / 0.20, 1e-9);
 }
 
+TEST(PoseCandidates, WhatWasDismissedGivesWayToTheNextBest) {
+  PoseCandidates all = candidates();
+  all.keep(candidate(0.9, Vector3(0, 0, 1)));
+  all.keep(candidate(0.8, Vector3(0, 0.01, 1), 90));
+  all.keep(candidate(0.6, Vector3(0.5, 0, 1)));
+  all.dismiss(all.best());
+  Detection best = all.best();
+  EXPECT_EQ(best.score, 0.6);
+  EXPECT_EQ(best.rival, -10);
+  all.keep(candidate(0.85, Vector3(0.02, 0, 1), 180));  // the ball again
+  EXPECT_EQ(all.best().score, 0.6);
+  all.keep(candidate(0.95, Vector3(0.02, 0, 1), 180));  // better than the ball was: the object
+  EXPECT_EQ(all.best().score, 0.95);
+  all.dismiss(all.best());
+  all.dismiss(all.best());
+  EXPECT_EQ(all.best().score, -10);
+}
+
+TEST(PoseCandidates, TwinsCountAsTheCallerSays) {
+  PoseCandidates all = candidates();
+  all.keep(candidate(0.6, Vector3(0, 0, 1)));
+  all.keep(candidate(0.5, Vector3(0, 0, 1), 90));
+  all.keep(candidate(0.4, Vector3(0, 0, 1), 180));
+  const Detection best = all.best();
+  EXPECT_EQ(all.best_twin(best, [](const RigidTransform&) { return true; }), 0.5);
+  const RigidTransform& nearer = all.all()[1].pose;
+  EXPECT_EQ(all.best_twin(best, [&](const RigidTransform& pose) { return pose.rotation != nearer.rotation; }),
+            0.4);
+  EXPECT_EQ(all.best_twin(best, [](const RigidTransform&) { return false; }), -10);
+}
+
 Detection detection(double score, double rival, double twin, double close) {
   Detection d;
   d.score = score;

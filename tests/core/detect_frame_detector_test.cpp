@@ -93,6 +93,23 @@ TEST(FrameDetector, SaysNothingWithoutTheObject) {
   EXPECT_EQ(fixture.run(), DetectState::nothing);
 }
 
+TEST(FrameDetector, ABallOfTheObjectsSizeIsNotTheObject) {
+  DetectorFixture fixture;
+  for (int k = 0; k < 8; ++k) {
+    TestCloud ball;
+    const double radius = 0.08 + 0.006 * k;  // the object is 0.07 to 0.16 m in radius
+    for (int i = 0; i < 60000; ++i) {
+      const double z = 1 - 2 * (i + 0.5) / 60000, r = std::sqrt(1 - z * z), a = 2.4 * i;
+      const Vector3 d(r * std::cos(a), r * std::sin(a), z);
+      ball.positions.push_back(testing::point3f(Vector3(0.05, -0.02, 0.75) + radius * d));
+      ball.normals.push_back(testing::normal16(d));
+    }
+    fixture.show(testing::depth_picture(camera(), ball, 1.2, 1, 0.0012, static_cast<unsigned>(k)));
+    fixture.detector.begin(fixture.surface);
+    EXPECT_EQ(fixture.run(), DetectState::nothing) << radius;
+  }
+}
+
 TEST(FrameDetector, SaysNothingOfEmptyAndNoisyPictures) {
   DetectorFixture fixture;
   std::vector<std::uint16_t> picture(320 * 240, 0);

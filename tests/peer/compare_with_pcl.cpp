@@ -157,7 +157,7 @@ int compare(int argc, char** argv) {
               result.scene_keypoints, peer_result.model_keypoints, peer_result.scene_keypoints);
   for (const std::vector<double>& s : stages) std::printf(" %.1f", median_of(s));
   std::printf(" = **%.1f** |", mine);
-  for (const std::vector<double>& s : parts) std::printf(" %.0f", median_of(s));
+  for (const std::vector<double>& s : parts) std::printf(" %.1f", median_of(s));
   std::printf(" = **%.0f** | **%.1f×** | %s | %s (ICP: %s) |\n", other, other / mine,
               found ? error_of(model.view, result.instances[0].regions[0].transform, truth[0]).c_str() : "–",
               peer_result.found ? error_of(model.view, pose_of(peer_result.grouped), truth[0]).c_str() : "–",

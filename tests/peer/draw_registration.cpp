@@ -1,11 +1,13 @@
 // Pictures like the paper's Figures 8 to 10: draw_registration CASE_DIR SCENE OUT.png MODEL_KEYPOINTS
-// SCENE_KEYPOINTS. Registers a case and draws the model's points where the scene shows them, regions and
-// deformed points in their colours, from the side on which the points are spread widest.
+// SCENE_KEYPOINTS. Registers a case and draws the scene, grey, and beside it the scene with the model's
+// points where it shows them, regions and deformed points in their colours, from the side on which the points
+// are spread widest.
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <cstdlib>
 
 #include "core/detect/symmetric_eigen.hpp"
+#include "core/memory/row_major.hpp"
 #include "drivers/images/png.hpp"
 #include "firmware-app/pictures/scene_picture.hpp"
 #include "tests/accuracy/registration_runs.hpp"
@@ -21,7 +23,28 @@ Point3f point3f(const Vector3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
-constexpr int kKeyWidth = 440;  // pixels beside the object
+constexpr int kSide = 480;        // pixels, of each of the two pictures
+constexpr int kKeyWidth = 440;    // pixels before them
+constexpr double kDotRadius = 2;  // pixels, of a scene point
+constexpr double kUnits = 10000;  // of the drawn depth, a metre
+
+/// Draws points as they are seen by `camera` into a depth picture of its size, columns [first, last) alone.
+void draw_points(std::span<const Point3f> points, const RigidTransform& pose, const Intrinsics& camera,
+                 int first, int last, std::vector<std::uint16_t>& depth) {
+  for (const Point3f& point : points) {
+    const Vector3 p = pose * vector3(point);
+    if (!(p.z() > 0 && p.z() * kUnits < 65535)) continue;
+    const double u = camera.fx * p.x() / p.z() + camera.cx, v = camera.fy * p.y() / p.z() + camera.cy;
+    const auto reading = static_cast<std::uint16_t>(p.z() * kUnits);
+    for (int y = std::max(0, static_cast<int>(v - kDotRadius));
+         y <= std::min(camera.height - 1, static_cast<int>(v + kDotRadius)); ++y)
+      for (int x = std::max(first, static_cast<int>(u - kDotRadius));
+           x <= std::min(last - 1, static_cast<int>(u + kDotRadius)); ++x) {
+        std::uint16_t& held = depth[row_major(y, camera.width, x)];
+        if (held == 0 || reading < held) held = reading;
+      }
+  }
+}
 
 /// camera <- scene: looks along the direction in which the points are spread least, from the side of `front`,
 /// `up` at the top.
@@ -44,6 +67,21 @@ RigidTransform looking_at(std::span<const Point3f> points, const Vector3& front,
   const double size = std::sqrt(eigen.values(2) / static_cast<double>(points.size()));
   camera.translation = Vector3(0, 0, 8 * size) - camera.rotation * mean;
   return camera;
+}
+
+/// Leaves the places of the model's points black, so that their colours show.
+void clear_around(std::span<const Point3f> points, const Intrinsics& camera, int first,
+                  std::vector<std::uint16_t>& depth) {
+  constexpr int kAround = 5;  // pixels: between the points too
+  for (const Point3f& point : points) {
+    if (!(point.z > 0)) continue;
+    const Vector3 p = vector3(point);
+    const int u = static_cast<int>(camera.fx * p.x() / p.z() + camera.cx),
+              v = static_cast<int>(camera.fy * p.y() / p.z() + camera.cy);
+    for (int y = std::max(0, v - kAround); y <= std::min(camera.height - 1, v + kAround); ++y)
+      for (int x = std::max(first, u - kAround); x <= std::min(camera.width - 1, u + kAround); ++x)
+        depth[row_major(y, camera.width, x)] = 0;
+  }
 }
 
 int draw(char** argv) {
@@ -97,9 +135,16 @@ int draw(char** argv) {
   view.labels = labels;
   view.displacement = displacement;
   view.spacing = model.view.spacing();
-  view.camera = camera_that_shows(points, 480, 480);
-  view.camera.width += kKeyWidth;
-  view.camera.cx += kKeyWidth;
+  Intrinsics seen = camera_that_shows(points, kSide, kSide);
+  seen.width = kKeyWidth + 2 * kSide;
+  std::vector<std::uint16_t> depth(table_size(seen.width, seen.height), 0);
+  seen.cx += kKeyWidth;
+  draw_points(scene->vertices, camera, seen, kKeyWidth, kKeyWidth + kSide, depth);
+  seen.cx += kSide;
+  draw_points(scene->vertices, camera, seen, kKeyWidth + kSide, seen.width, depth);
+  clear_around(points, seen, kKeyWidth + kSide, depth);
+  view.camera = seen;
+  view.depth = depth;
   view.title = folder.filename().string();
   const Canvas canvas = draw_scene(view);
   if (const Outcome written = write_png_rgb8(argv[3], canvas.width(), canvas.height(), canvas.rgb());

@@ -5,6 +5,7 @@ PROGRAMS is the folder of compare_with_pcl and draw_registration, PLIANT the pro
 python3-numpy, python3-scipy for the labels.
 """
 import json
+import math
 import os
 import re
 import subprocess
@@ -38,38 +39,66 @@ STAGES = ("normals", "keypoints", "descriptors", "matching", "grouping")
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9")
 
 
-def plot(path, title, x_name, y_name, curves, logarithmic):
-    """Curves {name: [(x, y), ...]} as an SVG file."""
-    import math
-    width, height, left, right, top, bottom = 720, 420, 70, 190, 40, 50
-    xs = [x for c in curves.values() for x, _ in c]
-    ys = [y for c in curves.values() for _, y in c]
-    scale = (lambda v: math.log10(max(v, 1e-3))) if logarithmic else (lambda v: v)
-    x0, x1 = min(xs), max(xs)
-    y0, y1 = (math.floor(scale(min(ys))), math.ceil(scale(max(ys)))) if logarithmic else (0, max(ys) * 1.1)
+def number(value):
+    return f"{value:,.10g}".replace(",", "\u202f")
 
-    def at(x, y):
-        return (left + (width - left - right) * (x - x0) / (x1 - x0),
-                height - bottom - (height - top - bottom) * (scale(y) - y0) / (y1 - y0))
 
+class Axis:
+    """Values to pixels, on a linear scale from 0 or on a logarithmic one, with round ticks."""
+
+    def __init__(self, values, pixels, logarithmic, steps):
+        self.logarithmic, (self.first, self.last) = logarithmic, pixels
+        if logarithmic:
+            # Ticks at 1, 2 and 5 of each decade, or at the decades alone where that would be many.
+            low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
+            ticks = [m * 10.0 ** k for k in range(low, high + 1) for m in (1, 2, 5)]
+            if sum(min(values) <= t <= max(values) for t in ticks) > steps:
+                ticks = [10.0 ** k for k in range(low, high + 1)]
+            below, above = [t for t in ticks if t <= min(values)], [t for t in ticks if t >= max(values)]
+            self.ticks = [t for t in ticks if below[-1] <= t <= above[0]]
+        else:
+            step = next(m * 10.0 ** k for k in range(-6, 9) for m in (1, 2, 5) if max(values) <= steps * m * 10.0 ** k)
+            self.ticks = [step * k for k in range(math.ceil(max(values) / step) + 1)]
+        self.low, self.high = self.scale(self.ticks[0]), self.scale(self.ticks[-1])
+
+    def scale(self, value):
+        return math.log10(value) if self.logarithmic else value
+
+    def at(self, value):
+        return self.first + (self.last - self.first) * (self.scale(value) - self.low) / (self.high - self.low)
+
+
+def plot(path, title, x_name, y_name, curves, logarithmic, missing=()):
+    """Curves {name: [(x, y), ...]} as an SVG file. A name "WHO: WHAT" has WHAT's colour, and PCL's curves are dashed.
+    `missing` [(name, x), ...]: what gave no value, marked at the upper edge."""
+    width, height, left, right, top, bottom = 720, 420, 60, 200, 56, 50
+    x_axis = Axis([x for c in curves.values() for x, _ in c] + [x for _, x in missing], (left, width - right), logarithmic, 10)
+    y_axis = Axis([y for c in curves.values() for _, y in c], (height - bottom, top), logarithmic, 7)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" '
-           f'font-size="12"><rect width="100%" height="100%" fill="white"/><text x="{left}" y="22" font-size="15">{title}</text>']
-    ticks = [10.0 ** k for k in range(y0, y1 + 1)] if logarithmic else [y1 * k / 5 for k in range(6)]
-    for y in ticks:
-        _, v = at(x0, y)
+           f'font-size="12"><rect width="100%" height="100%" fill="white"/><text x="{left}" y="22" font-size="15">{title}</text>'
+           f'<text x="{left}" y="{top - 14}">{y_name}</text>']
+    for y in y_axis.ticks:
+        v = y_axis.at(y)
         out.append(f'<path d="M{left} {v:.1f}H{width - right}" stroke="#ddd"/><text x="{left - 6}" y="{v + 4:.1f}" '
-                   f'text-anchor="end">{y:.3g}</text>')
-    for x in sorted(set(xs)):
-        u, _ = at(x, ticks[0])
-        out.append(f'<text x="{u:.1f}" y="{height - bottom + 18}" text-anchor="middle" font-size="10">{x:g}</text>')
-    out.append(f'<text x="{(left + width - right) / 2}" y="{height - 8}" text-anchor="middle">{x_name}</text>'
-               f'<text x="12" y="{top - 6}">{y_name}</text>')
+                   f'text-anchor="end">{number(y)}</text>')
+    for x in x_axis.ticks:
+        u = x_axis.at(x)
+        out.append(f'<path d="M{u:.1f} {top}V{height - bottom}" stroke="#eee"/><text x="{u:.1f}" '
+                   f'y="{height - bottom + 18}" text-anchor="middle">{number(x)}</text>')
+    out.append(f'<text x="{(left + width - right) / 2}" y="{height - 8}" text-anchor="middle">{x_name}</text>')
+    kinds = list(dict.fromkeys(name.split(": ")[-1] for name in curves))
     for k, (name, curve) in enumerate(curves.items()):
-        colour, dash = COLOURS[k % 6], ' stroke-dasharray="5 3"' if name.startswith("PCL") else ""
-        points = " ".join("%.1f,%.1f" % at(x, y) for x, y in curve)
-        out.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="2"{dash}/>'
-                   f'<path d="M{width - right + 10} {top + 16 * k}h22" stroke="{colour}" stroke-width="2"{dash}/>'
-                   f'<text x="{width - right + 38}" y="{top + 4 + 16 * k}">{name}</text>')
+        colour = COLOURS[kinds.index(name.split(": ")[-1])]
+        dash = ' stroke-dasharray="5 3"' if name.startswith("PCL") else ""
+        points = [(x_axis.at(x), y_axis.at(y)) for x, y in curve]
+        path_points = " ".join(f"{u:.1f},{v:.1f}" for u, v in points)
+        out.append(f'<polyline points="{path_points}" fill="none" stroke="{colour}" stroke-width="2"{dash}/>'
+                   f'<path d="M{width - right + 20} {top + 16 * k}h22" stroke="{colour}" stroke-width="2"{dash}/>'
+                   f'<text x="{width - right + 48}" y="{top + 4 + 16 * k}">{name}</text>')
+        out += [f'<circle cx="{u:.1f}" cy="{v:.1f}" r="2.5" fill="{colour}"/>' for u, v in points]
+        out += [f'<path d="M{x_axis.at(x) - 5:.1f} {top - 5}l10 10m0 -10l-10 10" stroke="{colour}" stroke-width="2"/>'
+                f'<text x="{x_axis.at(x) - 10:.1f}" y="{top + 18}" text-anchor="end">not found</text>'
+                for who, x in missing if who == name]
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(out) + "\n</svg>\n")
 
@@ -105,7 +134,7 @@ def main():
     print("\n### Wrong labels against noise (the paper's Fig. 7)\n")
     print("| noise, % of the spacing | Pliant: wrong | F1 of deformed | PCL with ICP: wrong | F1 of deformed |\n|---|---|---|---|---|")
     case = "b2_local_clutter_resampled"
-    wrong = {"Pliant": [], "PCL with ICP": []}
+    wrong, missing = {"Pliant": [], "PCL with ICP": []}, []
     with tempfile.TemporaryDirectory() as work:
         model, ours, theirs = (os.path.join(work, n) for n in ("m.model", "ours.ply", "theirs.ply"))
         subprocess.run([pliant, "model", "build", os.path.join(CASES, case, "model.ply"), "-o", model], check=True,
@@ -123,8 +152,10 @@ def main():
             for who, text in (("Pliant", mine), ("PCL with ICP", peer)):
                 if "%" in text:
                     wrong[who].append((noise, float(text.split("%")[0])))
+                else:
+                    missing.append((who, noise))
     plot(os.path.join(out, "label_errors.svg"), "Wrong labels against noise, b2_local_clutter_resampled",
-         "noise, % of the point spacing", "wrong, %", wrong, False)
+         "noise, % of the point spacing", "wrong, %", wrong, False, missing)
     for case, model, keys in (("d1_pillow", 2067, 2654), ("d2_pillow_clutter", 2425, 2926), ("c_humanoid", 2048, 2000)):
         subprocess.run([os.path.join(programs, "draw_registration"), os.path.join(CASES, case), "scene.ply",
                         os.path.join(out, case + ".png"), str(model), str(keys)], check=True)
