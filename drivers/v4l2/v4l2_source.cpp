@@ -249,7 +249,7 @@ Result<std::unique_ptr<DepthSource>> open_v4l2(const V4l2Address& address, const
     return Error{
         ErrorKind::bad_input,
         "v4l2: a video device does not tell its camera; name a sensor description, for example --sensor "
-        "config/sensors/realsense_d435.toml"};
+        "config/sensors/realsense_d435.toml, or [sensor] description in the config"};
   V4l2File file;
   V4l2Node node;
   if (const Outcome found = find_node(system, address, file, node); !found) return found.error();

@@ -21,6 +21,7 @@ struct Checked {
   SensorFile sensor;
   Intrinsics camera;
   std::string camera_origin;
+  std::string device;  ///< why the source's device cannot be used now; no fault of the config
   ModelFile model;
   bool has_model = false;
 };
@@ -28,18 +29,27 @@ struct Checked {
 Result<Checked> open_all(const Config& config) {
   Checked all;
   all.camera_origin = "no source or sensor given";
+  SourceOptions options;
   if (!config.sensor.description.empty()) {
     Result<SensorFile> sensor = read_sensor(config.sensor.description);
     if (!sensor) return sensor.error();
     all.sensor = *sensor;
+    options.sensor = *sensor;
     all.camera_origin = "from the sensor's description";
   }
   all.camera = all.sensor.intrinsics();
   if (!config.source.empty()) {
-    const Result<OpenSource> source = open_source(config.source);
-    if (!source) return source.error();
-    all.camera = source->source->intrinsics();
-    all.camera_origin = "from the source";
+    const Result<OpenSource> source = open_source(config.source, options);
+    if (source) {
+      all.camera = source->source->intrinsics();
+      all.camera_origin = "from the source";
+    } else if (source.error().kind == ErrorKind::bad_input) {
+      return source.error();
+    } else {
+      // Not plugged in yet, or in use by the service.
+      all.device = source.error().message;
+      if (!options.sensor) all.camera_origin = "that of a Structure Sensor, for want of the device";
+    }
   }
   if (!config.model.empty() || brings_own_model(config.source)) {
     Result<ModelFile> model = load_model(config.model, config.source);
@@ -73,6 +83,7 @@ int check(const std::string& path) {
   const double period = 1000 / all->sensor.mode.rate;
   text += fmt::format("time: {:g} ms for a frame, one comes every {:.1f} ms{}\n", config->track.budget_ms,
                       period, config->track.budget_ms > period ? "; frames will be dropped" : "");
+  if (!all->device.empty()) text += fmt::format("device: cannot be used now: {}\n", all->device);
   text += fmt::format("{} is valid\n", path);
   return print(text) ? kExitDone : kExitFailed;
 }

@@ -28,6 +28,24 @@ TEST_F(CheckCommand, NamesThePlaceOfAFault) {
   expect_refused(run_pliant({"check", "--config", folder_.string()}), 2, {});
 }
 
+TEST_F(CheckCommand, ADeviceThatIsNotThereIsNoFaultOfTheConfig) {
+  const std::string path = at("p.toml"), model = box_model();
+  write_file(
+      at("sensor.toml"),
+      "[mode]\nwidth = 320\nheight = 240\nrate = 60\n[camera]\nfx = 285\nfy = 285\ncx = 160\ncy = 120\n");
+  write_file(path, "source = \"v4l2:/dev/video250\"\nmodel = \"" + model +
+                       "\"\n[sensor]\ndescription = \"sensor.toml\"\n");
+  const Ended ended = run_pliant({"check", "--config", path});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  for (const char* line :
+       {"camera: 320x240, from the sensor's description", "memory, MB: ", "one comes every 16.7 ms",
+        "device: cannot be used now: v4l2: /dev/video250", "is valid"})
+    EXPECT_NE(ended.out.find(line), std::string::npos) << line << "\n" << ended.out;
+  // A camera of V4L2 does not tell where its pixels look: without a description it is a fault.
+  write_file(path, "source = \"v4l2:/dev/video250\"\nmodel = \"" + model + "\"\n");
+  expect_refused(run_pliant({"check", "--config", path}), 2, {"sensor description"});
+}
+
 TEST_F(CheckCommand, OpensWhatTheConfigNames) {
   const std::string path = at("p.toml");
   write_file(path, "model = \"none.model\"\n");

@@ -1,7 +1,8 @@
 #!/bin/bash
 # tests/package/install_test.sh ARCH PACKAGES
 # Uses what ./dev package made, from the installed files only: the program's version, check and run on the simulated
-# source, the viewer's page, the service's unit, and a CMake project of its own that finds Pliant and tracks a frame.
+# source, the viewer's page, the service (booted, where the packages are this machine's), and a CMake project of its
+# own that finds Pliant and tracks a frame.
 #
 # The packages are installed by apt into a fresh Debian root of their architecture (debootstrap, as root; foreign
 # programs run there under qemu-user-static); where that cannot be had, they are unpacked and run beside the libraries
@@ -137,6 +138,12 @@ if command -v systemd-analyze >/dev/null; then
   systemd-analyze verify --man=no "$unit" || die "systemd-analyze verify has something to say"
   systemd-analyze security --offline=yes --threshold=30 "$unit" >"$scratch/security" || die "the service is too exposed: $(tail -1 "$scratch/security")"
   passed "the unit verifies; $(tail -1 "$scratch/security" | sed 's/^[^O]*//')"
+fi
+
+# And under a service manager of its own; a foreign one would run at an emulator's pace.
+if [ $mode = chroot ] && [ "$arch" = "$own" ] && command -v systemd-nspawn >/dev/null; then
+  install systemd-sysv iproute2 procps
+  "$here/tests/package/service_test.sh" "$root"
 fi
 
 # A project of one's own.

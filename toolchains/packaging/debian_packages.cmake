@@ -24,6 +24,8 @@ endif()
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME pliant)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION misc)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "${PLIANT_DEB_DEPENDS}")
+# For pliant-multicast@.service; every Debian but a container has it.
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "iproute2")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "pliant-viewer, pliant-lcmtypes, liblcm-bin")
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "Pliant finds a known object in the pictures of a depth camera and follows it
 while it moves, bends and is squashed. It says where every point of the

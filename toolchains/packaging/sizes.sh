@@ -1,8 +1,9 @@
 #!/bin/bash
 # toolchains/packaging/sizes.sh [ARCH...]
-# A table of what the packages in build/packages/ARCH take: the stripped program, the package's files, what the program
-# is linked with, and the time from its start to the first published status (median of five; a recording and a model
-# file at hand; foreign programs under emulation, which is many times slower than the board).
+# A table of what the packages in build/packages/ARCH take: the stripped program, the package's files, those of the
+# viewer's package, what the program is linked with, and the time from its start to the first published status (median
+# of five; a recording and a model file at hand; foreign programs under emulation, which is many times slower than the
+# board).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 export LC_ALL=C
@@ -23,10 +24,11 @@ print(next(round(utime / 1e3 - float(sys.argv[2]) * 1e3) for utime, channel, _ i
 END
 }
 
-printf '%-6s %12s %14s %13s  %s\n' "" "program, kB" "installed, kB" "to status, ms" "linked with"
+printf '%-6s %12s %14s %11s %13s  %s\n' "" "program, kB" "installed, kB" "viewer, kB" "to status, ms" "linked with"
 for arch in "${architectures[@]}"; do
   package=$(echo build/packages/"$arch"/pliant_*_"$arch".deb)
-  [ -f "$package" ] || die "no package for $arch; make it: ./dev package $arch"
+  viewer=$(echo build/packages/"$arch"/pliant-viewer_*_"$arch".deb)
+  [ -f "$package" ] && [ -f "$viewer" ] || die "no packages for $arch; make them: ./dev package $arch"
   root=$scratch/$arch
   dpkg-deb -x "$package" "$root"
   runner=()
@@ -47,6 +49,7 @@ for arch in "${architectures[@]}"; do
     times+=("$(first_status "$scratch/log" "$start")")
   done
   time=$(printf '%s\n' "${times[@]}" | sort -n | sed -n 3p)
-  printf '%-6s %12s %14s %13s  %s\n' "$arch" "$(($(stat -c %s "$program") / 1000))" "$(dpkg-deb -f "$package" Installed-Size)" \
-    "$time" "$(dpkg-deb -f "$package" Depends | sed 's/ ([^)]*)//g')"
+  printf '%-6s %12s %14s %11s %13s  %s\n' "$arch" "$(($(stat -c %s "$program") / 1000))" \
+    "$(dpkg-deb -f "$package" Installed-Size)" "$(dpkg-deb -f "$viewer" Installed-Size)" "$time" \
+    "$(dpkg-deb -f "$package" Depends | sed 's/ ([^)]*)//g')"
 done
