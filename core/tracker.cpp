@@ -149,12 +149,14 @@ const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
   if (s.following) {
     s.before = s.regions;
     s.patches_before = s.warp.pose;
+    s.patch_steps_before = s.warp.steps;
     predict_regions(s);
     done(s, Stage::predict);
     observe_surface(s, frame);  // vertices and normals of the predicted window
     done(s, Stage::surface);
     align_regions(s);  // correspondences and a rigid transform for every region
     warp_surface(s);   // springs carry what moves otherwise to the surface
+    regain_base(s);    // where most of the object moved on, the base goes along
     done(s, Stage::deform);
     label_points(s);  // the inlier test
     done(s, Stage::label);

@@ -43,6 +43,7 @@ struct TrackerState {
   RegionSet regions;
   RegionSet before;  // as they were before this frame, to return to when the frame fails
   std::array<RigidTransform, kMaxPatches> patches_before;  // likewise
+  std::array<StepMemory, kMaxPatches> patch_steps_before;
   RegroupState regroup_state;
   PatchWarp warp;
   Strain strain;
@@ -67,6 +68,7 @@ void observe_surface(TrackerState& s, const DepthFrame& frame) noexcept;
 void predict_regions(TrackerState& s) noexcept;
 void align_regions(TrackerState& s) noexcept;
 void warp_surface(TrackerState& s) noexcept;
+void regain_base(TrackerState& s) noexcept;
 void label_points(TrackerState& s) noexcept;
 void regroup_outliers(TrackerState& s) noexcept;
 void match_deformed(TrackerState& s) noexcept;

@@ -109,6 +109,9 @@ void warp_surface(TrackerState& s) noexcept {
   settings.outward = kMotionGate / 2;  // a finger stands before the surface, a dent never does
   warp_patches(s.tables, s.patches, s.surface, s.projector, s.tolerance, s.regions, settings, s.points,
                s.warp);
+}
+
+void regain_base(TrackerState& s) noexcept {
   regain_hold(s.tables, s.patches, s.warp, s.tolerance, s.regions[0], s.points);
 }
 
@@ -168,6 +171,7 @@ bool judge(TrackerState& s) noexcept {
 void return_to_last_frame(TrackerState& s) noexcept {
   s.regions = s.before;
   s.warp.pose = s.patches_before;
+  s.warp.steps = s.patch_steps_before;
   for (std::size_t i = 0; i < s.tables.size; ++i)
     if (!s.regions[static_cast<std::size_t>(s.points.home[i])].alive) s.points.home[i] = 0;
 }
@@ -194,6 +198,7 @@ bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pos
   base.last_pose = base.pose;
   s.warp.reset(base.pose);
   warp_surface(s);
+  regain_base(s);
   label_points(s);
   count_regions(s);
   match_deformed(s);

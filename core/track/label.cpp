@@ -99,8 +99,8 @@ std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
       std::min<std::int64_t>(x * x + y * y + z * z, std::numeric_limits<std::uint32_t>::max()))));
 }
 
-/// Where a patch's readings take a point is known better than any one of them tells: three σ instead of four
-/// put it off its region.
+/// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
+/// inlier limit, 3 σ or more, put it off its region.
 Verdict examine(const LabelContext& context, const Sighting& sighting, const FixedPose& home,
                 std::int8_t region, const Sighting::Look& at_home, std::size_t i) noexcept {
   Verdict verdict;

@@ -40,7 +40,7 @@ void regain_hold(const ModelTables& model, const PatchTables& patches, const Pat
   if (!hold.lost()) return;
   const RigidTransform pose = common_motion(patches, warp, base.pose, limit);
   const Hold regained = hold_of(patches, warp, 0, pose, limit);
-  if (regained.standing < 2 * hold.standing) return;
+  if (regained.standing <= 2 * hold.standing) return;  // nothing stands by either: there is no hold to regain
   base.pose = pose;
   base.motion = pose * base.last_pose.inverse();
   for (std::size_t i = 0; i < model.size; ++i)

@@ -135,6 +135,7 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
         regions[a].pose = regions[b].pose;
         regions[a].last_pose = regions[b].last_pose;
         regions[a].motion = regions[b].motion;
+        regions[a].steps = regions[b].steps;
       }
       dissolve(context, state, regions, points, b, ia);
       return true;

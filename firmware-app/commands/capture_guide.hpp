@@ -12,10 +12,10 @@ namespace pliant {
 /// Names of the sides that were not seen: "the back, the back left". Empty when all were.
 [[nodiscard]] std::string sides_missing(const Coverage& coverage);
 
-/// Turns the pictures' statuses into a line that is renewed and advice that is given when it changes.
 /// What a capture in whose pictures the shape mostly did not tell how it turned is worth; empty when it did.
 [[nodiscard]] std::string doubt_of_turning(const CaptureFigures& figures, const Coverage& coverage);
 
+/// Turns the pictures' statuses into a line that is renewed and advice that is given when it changes.
 class CaptureGuide {
  public:
   explicit CaptureGuide(double rate) : rate_(rate > 1 ? rate : 30) {}

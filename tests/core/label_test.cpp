@@ -107,6 +107,31 @@ TEST_F(Label, WhatTheCameraSeesThroughIsDeformedAfterClearEvidence) {
   EXPECT_EQ(labels().count(kDeformed), 0U);
 }
 
+TEST_F(Label, WhatTheWarpTakesThreeQuartersOfTheLimitAwayIsDeformed) {
+  for (const double share : {0.6, 0.9}) {
+    SetUp();
+    const double limit =
+        scene().tolerance.deformed(depth_of(usual_pose(), scene().tables.centre)) / kUnitsPerMetre;
+    RigidTransform seen = usual_pose();
+    seen.translation.z() += share * limit;
+    scene().see_body(seen);
+    PatchWarp& warp = *scene().warp;
+    warp.reset(seen);
+    warp.home.fill(0);
+    warp.rigid.fill(false);
+    for (FixedPose& fixed : warp.fixed) fixed = FixedPose(seen, scene().tables.centre);
+    SightCounts counts;
+    for (int frame = 0; frame < 8; ++frame) counts = scene().look_now();
+    const auto count = labels();
+    const std::size_t deformed = count.count(kDeformed) != 0 ? count.at(kDeformed) : 0;
+    if (share < 0.75) {
+      EXPECT_LT(deformed, counts.facing / 20);
+    } else {
+      EXPECT_GT(deformed, counts.facing * 3 / 4);
+    }
+  }
+}
+
 TEST_F(Label, WhatOnlyTurnedIntoSightIsNotDeformed) {
   // the warp has the body turned a little about itself, as it is seen; its region does not
   const Vector3 at = usual_pose() * scene().tables.centre;

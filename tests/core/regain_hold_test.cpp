@@ -70,6 +70,14 @@ TEST_F(RegainHold, StaysWhereMostOfItStands) {
   EXPECT_EQ(void_evidence(), 0U);
 }
 
+TEST_F(RegainHold, StaysWhereNoMotionIsShared) {
+  for (std::size_t p = 0; p < scene().patches.count; ++p)
+    scene().warp->pose[p].translation += Vector3(0.03 * static_cast<double>(p + 1), 0, 0);
+  regain();
+  EXPECT_EQ(moved(), 0.0);
+  EXPECT_EQ(void_evidence(), 0U);
+}
+
 TEST_F(RegainHold, StaysWhereNothingIsSeen) {
   move_from(-1, pose_at({0, 0.02, 0}));
   scene().warp->seen.fill(0);
