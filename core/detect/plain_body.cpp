@@ -20,6 +20,7 @@ constexpr float kNear = 0.05F;            // metres; nearer points have no pixel
 // (F distribution).
 constexpr double kClearlyFarther = 1.5;
 
+constexpr double kFlat = 0.25;     // of the noise: what a model's faces bulge by at the most, unseen
 constexpr double kSmoothed = 0.5;  // of the noise, that the snapshot's smoothing leaves at the most
 constexpr int kCapRounds = 4;      // of telling each reading cap or tube and fitting both anew
 
@@ -77,13 +78,13 @@ PlainBodyFit plain_body_fit(const ProbePoints& points, const DepthSnapshot& snap
   const Vector3 middle = pose * points.centre();
   const double unit = points.radius();
   const auto base = static_cast<float>(tolerance), widest = static_cast<float>(most);
-  std::array<OrientedReading, kMostPlainPoints> readings;
+  std::array<OrientedReading, kMostPlainPoints> readings, own;  // own: the model's points under the readings
   std::array<float, kMostPlainPoints> limits;
   std::size_t number = 0;
   PlainBodyFit fit;
   QuadricFit quadric;
   points.visit_facing(FastTransform(pose), std::min(count, kMostPlainPoints),
-                      [&](const Point3f& p, const Point3f&, float facing) {
+                      [&](const Point3f& p, const Point3f& normal, float facing) {
                         int u = 0, v = 0;
                         if (p.z < kNear || !snapshot.project(p, u, v) || snapshot.depth(u, v) == 0) return;
                         const float z = snapshot.vertex(u, v).z, sigma = sigma_at(snapshot.sensor(), p.z);
@@ -97,6 +98,9 @@ PlainBodyFit plain_body_fit(const ProbePoints& points, const DepthSnapshot& snap
                                             static_cast<double>(p.z));
                         const Normal16& n = snapshot.normal(u, v);
                         readings[number] = {(reading - middle) / unit, Vector3(n.x, n.y, n.z) / 16384.0};
+                        own[number] = {(reading / scale - middle) / unit,
+                                       Vector3(static_cast<double>(normal.x), static_cast<double>(normal.y),
+                                               static_cast<double>(normal.z))};
                         limits[number] = limit;
                         quadric.add(readings[number++].point);
                         fit.model += static_cast<double>(off * off);
@@ -115,6 +119,13 @@ PlainBodyFit plain_body_fit(const ProbePoints& points, const DepthSnapshot& snap
     fit.quadric += quadric.squared_distance(readings[k].point, limit);
     fit.faces += faces.squared_distance(readings[k].point, limit);
   }
+  // A model that has flat faces itself is no worse for them.
+  FlatFaces of_model;
+  of_model.start({own.data(), number});
+  of_model.fit({own.data(), number});
+  double bulge = 0;
+  for (std::size_t k = 0; k < number; ++k) bulge += of_model.squared_distance(own[k].point, 1);
+  const bool flat_itself = bulge * unit * unit < kFlat * kFlat * fit.noise;
   fit.readings = static_cast<int>(number);
   const auto share = 1.0 / static_cast<double>(number);
   fit.model *= share;
@@ -122,6 +133,7 @@ PlainBodyFit plain_body_fit(const ProbePoints& points, const DepthSnapshot& snap
   fit.quadric *= share * unit * unit;
   fit.faces *= share * unit * unit;
   fit.capped *= unit * unit;
+  if (flat_itself) fit.faces = fit.capped = kNone;
   return fit;
 }
 
