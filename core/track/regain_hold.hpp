@@ -7,8 +7,8 @@
 namespace pliant {
 
 /// Where less than half of what is seen of the base region stands where it puts it, but one rigid motion
-/// puts more than twice as much of it where the warp took it, the base goes there; the evidence that those points were
-/// off it is void.
+/// puts more than twice as much of it where the warp took it, the base goes there; the evidence that those
+/// points were off it is void.
 void regain_hold(const ModelTables& model, const PatchTables& patches, const PatchWarp& warp,
                  const Tolerance& tolerance, TrackedRegion& base, PointState& points) noexcept;
 
