@@ -23,6 +23,7 @@ bool find_aside(const Surface& surface, const AsideReach& reach, int u, int v, c
       if (square < best && surface.faces(uu, vv, Surface::normal_step(z8, reach.spacing), n)) {
         best = square;
         nearest = q;
+        found.match = vv * surface.width() + uu;
         any = true;
       }
       break;  // what lies beyond the first is farther

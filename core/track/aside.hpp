@@ -16,10 +16,11 @@ struct AsideReach {
 inline constexpr int kLooksAside = 4;  ///< to each side
 
 /// What pulls a point aside: the unit direction (Q14) and the distance (1/16 mm) to the nearest reading of
-/// the object.
+/// the object, and that one's pixel.
 struct Aside {
   IntPoint direction;
   std::int32_t distance = 0;
+  std::int32_t match = -1;
 };
 
 /// The nearest reading along the four directions of the picture, beside pixel (u, v) where the camera sees

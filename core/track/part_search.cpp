@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/track/patch_flood.hpp"
+
 namespace pliant {
 
 namespace {
@@ -27,23 +29,14 @@ struct Attempt {
 /// Connected patches from `seed` on that `pose` suits, and suits better than the region's pose does.
 PatchSet grow(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, std::size_t seed,
               const RigidTransform& pose, const RigidTransform& region, double limit) noexcept {
-  std::array<std::uint8_t, kMaxPatches> queue{};
-  std::size_t head = 0, tail = 0;
   PatchSet set;
   set.add(seed);
-  queue[tail++] = static_cast<std::uint8_t>(seed);
   const double most = kDeviation * limit;
-  while (head < tail) {
-    const std::size_t p = queue[head++];
-    for (std::size_t q = 0; q < patches.count; ++q) {
-      if (!patches.neighbours[p].has(q) || set.has(q) || !counts(warp, q, k)) continue;
-      const double own = patch_deviation(patches, warp, q, pose);
-      if (own > most * most || own >= patch_deviation(patches, warp, q, region)) continue;
-      set.add(q);
-      queue[tail++] = static_cast<std::uint8_t>(q);
-    }
-  }
-  return set;
+  return flood(patches, set, [&](std::size_t, std::size_t q) {
+    if (!counts(warp, q, k)) return false;
+    const double own = patch_deviation(patches, warp, q, pose);
+    return own <= most * most && own < patch_deviation(patches, warp, q, region);
+  });
 }
 
 void measure(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, const RigidTransform& region,
@@ -80,8 +73,11 @@ std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::i
   return count;
 }
 
-/// A part moved by more than this share of the inlier limit, in the mean square.
-constexpr double kMoved = 0.6;
+/// A part moved by more than this many inlier limits, in the mean square. A dent's top, too, is more than
+/// half of what moved as long as it is shallow: where the surface falls off as a bell does, what lies within
+/// kDeviation of the top is half of what is off by more than that when the dent is 1.3 limits deep and its
+/// top 1.1 in the mean; that a motion may turn as well adds to it.
+constexpr double kMoved = 1.2;
 
 /// A part explains more than half of what moved about it: around a joint that is all but the skin there. Of
 /// what bends, one motion explains a piece.
@@ -90,24 +86,13 @@ constexpr double kMostOfWhatMoved = 0.5;
 /// Share of what moved farther than grow() lets a part deviate, connected with the part, that is of the part.
 double explained_share(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
                        const RigidTransform& region, const Attempt& attempt, double limit) noexcept {
-  std::array<std::uint8_t, kMaxPatches> queue{};
-  std::size_t head = 0, tail = 0;
-  PatchSet reached = attempt.set;
   double all = attempt.points;
   const double least = kDeviation * limit;
-  for (std::size_t p = 0; p < patches.count; ++p)
-    if (attempt.set.has(p)) queue[tail++] = static_cast<std::uint8_t>(p);
-  while (head < tail) {
-    const std::size_t p = queue[head++];
-    for (std::size_t q = 0; q < patches.count; ++q) {
-      if (!patches.neighbours[p].has(q) || reached.has(q) || !counts(warp, q, k) ||
-          patch_deviation(patches, warp, q, region) < least * least)
-        continue;
-      reached.add(q);
-      all += warp.seen[q];
-      queue[tail++] = static_cast<std::uint8_t>(q);
-    }
-  }
+  (void)flood(patches, attempt.set, [&](std::size_t, std::size_t q) {
+    if (!counts(warp, q, k) || patch_deviation(patches, warp, q, region) < least * least) return false;
+    all += warp.seen[q];
+    return true;
+  });
   return attempt.points / all;
 }
 

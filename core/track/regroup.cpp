@@ -6,6 +6,7 @@
 
 #include "core/track/compare_poses.hpp"
 #include "core/track/hand_over.hpp"
+#include "core/track/patch_flood.hpp"
 
 namespace pliant {
 
@@ -152,23 +153,14 @@ std::size_t free_slot(const RegionSet& regions, int max_regions) noexcept {
 /// The part with those patches of region `k` that nobody sees and that lie nearer to it, along the patch
 /// graph, than to the rest.
 PatchSet complete_part(const RegroupContext& context, std::int8_t k, const PatchSet& part) noexcept {
-  std::array<std::uint8_t, kMaxPatches> queue{};
-  PatchSet reached, out = part;
-  std::size_t head = 0, tail = 0;
+  PatchSet decided, out = part;
   for (std::size_t p = 0; p < context.patches.count; ++p)
-    if (context.warp.home[p] == k && (part.has(p) || context.warp.seen[p] > 0)) {
-      reached.add(p);
-      queue[tail++] = static_cast<std::uint8_t>(p);
-    }
-  while (head < tail) {
-    const std::size_t p = queue[head++];
-    for (std::size_t q = 0; q < context.patches.count; ++q) {
-      if (!context.patches.neighbours[p].has(q) || reached.has(q) || context.warp.home[q] != k) continue;
-      reached.add(q);
-      if (out.has(p)) out.add(q);
-      queue[tail++] = static_cast<std::uint8_t>(q);
-    }
-  }
+    if (context.warp.home[p] == k && (part.has(p) || context.warp.seen[p] > 0)) decided.add(p);
+  (void)flood(context.patches, decided, [&](std::size_t p, std::size_t q) {
+    if (context.warp.home[q] != k) return false;
+    if (out.has(p)) out.add(q);
+    return true;
+  });
   return out;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/track/aside.hpp"
+
 namespace pliant {
 
 Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) const noexcept {
@@ -32,6 +34,20 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
   out.residual =
       gap == 8191 ? (q.z > out.point.z ? -8191 : 8191) : plane_distance(q, out.point, out.normal) >> 4;
   return out;
+}
+
+bool Sighting::look_beside(std::int32_t reach, Look& look) const noexcept {
+  int u = 0, v = 0;
+  if (!look.facing || !projector_.project(look.point, u, v)) return false;
+  const int step = std::max(1, projector_.pixels(reach, look.point.z) / kLooksAside);
+  Aside aside;
+  if (!find_aside(surface_, {reach, reach, step, spacing_}, u, v, look.point, look.normal, aside))
+    return false;
+  look.sight = Sight::agrees;
+  look.match = aside.match;
+  look.residual = aside.distance;
+  look.normal = aside.direction;
+  return true;
 }
 
 bool Sighting::try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept {

@@ -132,6 +132,42 @@ TEST_F(Label, WhatTheWarpTakesThreeQuartersOfTheLimitAwayIsDeformed) {
   }
 }
 
+TEST_F(Label, WhatLeftItsRegionIsMatchedBesideAHole) {
+  const double limit =
+      scene().tolerance.deformed(depth_of(usual_pose(), scene().tables.centre)) / kUnitsPerMetre;
+  RigidTransform seen = usual_pose();
+  seen.translation.z() += 0.9 * limit;
+  Picture picture(scene().camera);
+  picture.draw(scene().mesh, seen);
+  picture.wall(1.6);
+  constexpr int kLeft = 157, kRight = 163;
+  picture.block(kLeft, 0, kRight, 240, 0);  // no readings there
+  scene().see(picture);
+  PatchWarp& warp = *scene().warp;
+  warp.reset(seen);
+  warp.home.fill(0);
+  warp.rigid.fill(false);
+  for (FixedPose& fixed : warp.fixed) fixed = FixedPose(seen, scene().tables.centre);
+  for (int frame = 0; frame < 8; ++frame) (void)scene().look_now();
+  const FixedPose fixed(seen, scene().tables.centre);
+  const ModelTables& model = scene().tables;
+  std::size_t inside = 0, matched = 0;
+  for (std::size_t i = 0; i < model.size; ++i) {
+    const IntPoint p = fixed.point(model.x[i], model.y[i], model.z[i]);
+    int u = 0, v = 0;
+    if (!faces_camera(p, fixed.direction(model.nx[i], model.ny[i], model.nz[i]), 8192) ||
+        !scene().projector.project(p, u, v) || u < kLeft + 1 || u > kRight - 2)
+      continue;
+    ++inside;
+    if (scene().points.label[i] != kDeformed) continue;
+    ++matched;
+    const int beside = scene().points.match[i] % scene().camera.width;
+    EXPECT_TRUE(beside < kLeft || beside >= kRight) << beside;
+  }
+  EXPECT_GE(inside, 8U);
+  EXPECT_GE(matched * 4, inside * 3);
+}
+
 TEST_F(Label, WhatOnlyTurnedIntoSightIsNotDeformed) {
   // the warp has the body turned a little about itself, as it is seen; its region does not
   const Vector3 at = usual_pose() * scene().tables.centre;

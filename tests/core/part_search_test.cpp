@@ -75,6 +75,36 @@ TEST_F(PartSearch, APieceIsBetterThanARegionThatHasLostItsHold) {
   EXPECT_TRUE(find([](double x) { return std::fabs(x) > 0.01 ? 4.0 : 0.0; }));
 }
 
+TEST_F(PartSearch, ADentIsNoPartHoweverShallow) {
+  const TrackScene body(synthetic::bumpy_body());
+  PatchWarp& warp = *body.warp;
+  const RigidTransform& pose = usual_pose();
+  std::size_t top = 0;
+  for (std::size_t p = 0; p < body.patches.count; ++p)
+    if (body.patches.centres[p].z() > body.patches.centres[top].z()) top = p;
+  for (const double width : {0.02, 0.03, 0.05})
+    for (double depth = 0.5; depth < 6; depth += 0.25) {  // inlier limits
+      warp.reset(pose);
+      warp.home.fill(0);
+      for (std::size_t p = 0; p < body.patches.count; ++p) {
+        // a surface that falls off as a bell does, each patch turned as the surface is there
+        const Vector3 from = body.patches.centres[p] - body.patches.centres[top];
+        const double fallen = depth * kLimit * std::exp(-from.squaredNorm() / (2 * width * width));
+        const Vector3 slope = fallen / (width * width) * Vector3(from.x(), from.y(), 0);
+        const Vector3 axis = Vector3(0, 0, 1).cross(-slope);
+        RigidTransform dent;
+        if (axis.norm() > 1e-6) dent.rotation = synthetic::turn(axis / axis.norm(), std::atan(axis.norm()));
+        const Vector3& centre = body.patches.centres[p];
+        dent.translation = centre - dent.rotation * centre - Vector3(0, 0, fallen);
+        warp.pose[p] = pose * dent;
+        warp.seen[p] = body.patches.sizes[p];
+      }
+      PartSearchSettings settings;
+      settings.limit = kLimit;
+      EXPECT_FALSE(find_rigid_part(body.patches, warp, 0, pose, settings, part_)) << width << " " << depth;
+    }
+}
+
 TEST_F(PartSearch, FindsNothingWhereNothingMoved) {
   EXPECT_FALSE(find([](double) { return 0.0; }));
 }
