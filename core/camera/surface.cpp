@@ -172,7 +172,8 @@ Surface::KeptNormal Surface::take_normal(int u, int v, int step) const noexcept 
 }
 
 const Surface::KeptNormal& Surface::raw_normal(int u, int v, int step) const noexcept {
-  KeptNormal& kept = normals_[static_cast<std::size_t>(v * width_ + u)];
+  KeptNormal& kept =
+      normals_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
   if (kept.step != step) kept = take_normal(u, v, step);
   return kept;
 }

@@ -4,7 +4,9 @@
 #include <random>
 #include <vector>
 
+#include "core/camera/surface.hpp"
 #include "core/detect/flat_faces.hpp"
+#include "core/detect/plain_body.hpp"
 #include "core/detect/pose_candidates.hpp"
 #include "core/detect/quadric.hpp"
 #include "core/detect/self_likeness.hpp"
@@ -90,6 +92,76 @@ TEST(FlatFaces, WithoutNormalsThereAreNone) {
   faces.fit(readings);
   EXPECT_EQ(faces.count(), 0U);
   EXPECT_DOUBLE_EQ(faces.squared_distance({0, 0, 0}, 0.5), 0.25);
+}
+
+/// A box of 0.2 × 0.14 × 0.16 m whose faces bulge by `bulge` in their middles, `side`² points a face.
+testing::TestCloud box(int side, double bulge) {
+  const Vector3 half(0.1, 0.07, 0.08);
+  testing::TestCloud cloud;
+  for (int face = 0; face < 6; ++face)
+    for (int i = 0; i < side * side; ++i) {
+      const double a = (i / side + 0.5) / side * 2 - 1, b = (i % side + 0.5) / side * 2 - 1;
+      const int axis = face / 2, next = (axis + 1) % 3, last = (axis + 2) % 3;
+      const double sign = face % 2 == 0 ? 1 : -1;
+      Vector3 p, n;
+      p(axis) = sign * (half(axis) + bulge * (1 - a * a) * (1 - b * b));
+      p(next) = a * half(next);
+      p(last) = b * half(last);
+      n(axis) = sign;
+      n(next) = 2 * bulge * a * (1 - b * b) / half(next);
+      n(last) = 2 * bulge * b * (1 - a * a) / half(last);
+      cloud.positions.push_back(testing::point3f(p));
+      cloud.normals.push_back(testing::normal16(n));
+    }
+  return cloud;
+}
+
+/// How a plain body and the model explain the picture of a true box.
+PlainBodyFit fit_to_box(const testing::TestCloud& cloud) {
+  Intrinsics camera;
+  camera.width = 320;
+  camera.height = 240;
+  camera.fx = camera.fy = 285;
+  camera.cx = 160;
+  camera.cy = 120;
+  const RigidTransform pose = testing::test_pose(0.9, Vector3(1, 0.7, 0.2), Vector3(0.02, -0.01, 0.7));
+  const std::vector<std::uint16_t> picture =
+      testing::depth_picture(camera, testing::moved(box(150, 0), pose), 1.2, 1, 0.0012);
+  DepthFrame frame;
+  frame.depth = picture.data();
+  frame.width = frame.stride = camera.width;
+  frame.height = camera.height;
+  const testing::TestModel model(cloud, 64);
+  EXPECT_EQ(model.fault(), ModelFault::none);
+  const testing::AlignedBlock block(8 << 20);
+  Workspace workspace(block.span());
+  Surface surface;
+  DepthSnapshot snapshot;
+  ProbePoints points;
+  surface.lay_out(workspace, camera);
+  snapshot.lay_out(workspace, camera);
+  points.lay_out(workspace, kMostPlainPoints);
+  EXPECT_FALSE(workspace.exhausted());
+  surface.start(camera, SensorDescription());
+  surface.build(frame, {0, 0, camera.width, camera.height});
+  snapshot.start(camera, SensorDescription());
+  snapshot.take(surface);
+  snapshot.compute_normals(0, snapshot.lattice_height(), 0.01);
+  points.start(model.view());
+  return plain_body_fit(points, snapshot, pose, kMostPlainPoints, 0.006, 0.02);
+}
+
+TEST(PlainBodyFit, FacesAreNearerToABoxThanAModelWithRoundSides) {
+  const PlainBodyFit fit = fit_to_box(box(16, 0.008));
+  EXPECT_GT(fit.readings, 100);
+  EXPECT_TRUE(fit.faces_are_nearer());
+}
+
+TEST(PlainBodyFit, NoFacesAreNearerToABoxThanAModelThatHasThemItself) {
+  const PlainBodyFit fit = fit_to_box(box(16, 0));
+  EXPECT_GT(fit.readings, 100);
+  EXPECT_FALSE(fit.faces_are_nearer());
+  EXPECT_FALSE(fit.pieces_explain());
 }
 
 TEST(SelfLikeness, ABallLooksAlikeFromEverywhereTheObjectOnlyUnmoved) {
