@@ -30,7 +30,7 @@ constexpr std::int32_t kFullWeight = 256;  // Q8
   return moments;
 }
 
-/// A spring of `noise` squared over the joint's give squared.
+/// Springs of `noise` (a reading's variance) over the squares of what the joint gives and turns.
 void add_joint(const Joint& joint, const RigidTransform& pose, const Vector3& centre, double noise,
                Matrix6& a, Vector6& b) noexcept {
   const Vector3 at = pose * joint.place, arm = at - centre, gap = joint.target - at;
@@ -43,6 +43,10 @@ void add_joint(const Joint& joint, const RigidTransform& pose, const Vector3& ce
           spring.a[row >= column ? Symmetric6::index(row, column) : Symmetric6::index(column, row)];
   b.head<3>() += k * arm.cross(gap);
   b.tail<3>() += k * gap;
+  if (joint.turn == 0) return;
+  const double twist = noise / (joint.turn * joint.turn);
+  for (int i = 0; i < 3; ++i) a(i, i) += twist;
+  b.head<3>() += twist * turn_between(joint.rotation, pose.rotation);
 }
 
 }  // namespace

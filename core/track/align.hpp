@@ -17,8 +17,8 @@ struct AlignSettings {
 
 /// One Gauss–Newton step for every region with correspondences: Tukey weights at a scale from the median
 /// residual (never below the sensor's noise), the prediction as a prior that decides where the surface does
-/// not, joints that hold what slides along itself. Updates pose, scale and rms. Regions with too few
-/// correspondences keep their prediction.
+/// not, joints that hold what slides along itself or turns about itself. Updates pose, scale and rms. Regions
+/// with too few correspondences keep their prediction.
 void align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
            const PointState& points, RegionSet& regions) noexcept;
 

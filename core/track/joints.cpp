@@ -7,6 +7,9 @@ namespace {
 /// A border is known to half a patch's radius, and what lies that far from a joint moves by half of it when
 /// the part turns by half a radian.
 constexpr double kGiveOfRadius = 0.25;
+/// A part turns freely by as much, but where the surface does not tell, as of a round limb about itself, it
+/// turns with what it hangs on. What is seen of a swing outweighs it a thousand times.
+constexpr double kTurn = 0.3;
 
 }  // namespace
 
@@ -35,9 +38,16 @@ Joints find_joints(const PatchTables& patches, const PatchWarp& warp, const Regi
   }
   Joints joints;
   for (std::size_t k = 1; k < regions.size(); ++k) {
-    const Sum& sum = sums[k][sums[k][0].edges > 0 ? 0 : 1];
+    const bool to_parent = sums[k][0].edges > 0;
+    const Sum& sum = sums[k][to_parent ? 0 : 1];
     if (!regions[k].alive || !(sum.edges > 0)) continue;
-    joints[k] = {true, sum.place / sum.edges, sum.target / sum.edges, kGiveOfRadius * patches.radius};
+    joints[k] = {
+        true,
+        sum.place / sum.edges,
+        sum.target / sum.edges,
+        kGiveOfRadius * patches.radius,
+        to_parent ? regions[static_cast<std::size_t>(regions[k].parent)].pose.rotation : Matrix3::Identity(),
+        to_parent ? kTurn : 0};
   }
   return joints;
 }

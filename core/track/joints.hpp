@@ -8,9 +8,11 @@ namespace pliant {
 /// A region's tie to what it borders on, in one frame.
 struct Joint {
   bool tied = false;
-  Vector3 place = Vector3::Zero();   ///< the middle of the border, model frame, metres
-  Vector3 target = Vector3::Zero();  ///< where the other side has it, camera frame, metres
-  double give = 0;                   ///< how far the two lie apart, one standard deviation, metres
+  Vector3 place = Vector3::Zero();         ///< the middle of the border, model frame, metres
+  Vector3 target = Vector3::Zero();        ///< where the other side has it, camera frame, metres
+  double give = 0;                         ///< how far the two lie apart, one standard deviation, metres
+  Matrix3 rotation = Matrix3::Identity();  ///< of the parent, camera <- model
+  double turn = 0;  ///< how far the region turns off that, one standard deviation, radians; 0: not known
 };
 
 using Joints = std::array<Joint, limits::kMaxRegions>;

@@ -10,8 +10,12 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kSeeds = 8;
-/// A patch of a part is where the part's motion puts it to within this share of the inlier limit.
+/// A patch of a part is where the part's motion puts it to within this share of the inlier limit, and of what
+/// the part moved by. A dent has a top that moves as one, too: where its sides fall off as a bell's do, what
+/// is within a share s of the top is ln(1 - s) / ln(s) of what moved by more than that, a fifth at a quarter,
+/// however deep it is; that a motion may turn as well makes it somewhat more.
 constexpr double kDeviation = 0.5;
+constexpr double kShareOfMotion = 0.25;
 constexpr int kRounds = 4;
 constexpr int kFitRounds = 3;
 constexpr double kRotationSupport = 0.5;  // a patch's turn is known from its own few readings only
@@ -28,10 +32,9 @@ struct Attempt {
 
 /// Connected patches from `seed` on that `pose` suits, and suits better than the region's pose does.
 PatchSet grow(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, std::size_t seed,
-              const RigidTransform& pose, const RigidTransform& region, double limit) noexcept {
+              const RigidTransform& pose, const RigidTransform& region, double most) noexcept {
   PatchSet set;
   set.add(seed);
-  const double most = kDeviation * limit;
   return flood(patches, set, [&](std::size_t, std::size_t q) {
     if (!counts(warp, q, k)) return false;
     const double own = patch_deviation(patches, warp, q, pose);
@@ -73,21 +76,17 @@ std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::i
   return count;
 }
 
-/// A part moved by more than this many inlier limits, in the mean square. A dent's top, too, is more than
-/// half of what moved as long as it is shallow: where the surface falls off as a bell does, what lies within
-/// kDeviation of the top is half of what is off by more than that when the dent is 1.3 limits deep and its
-/// top 1.1 in the mean; that a motion may turn as well adds to it.
-constexpr double kMoved = 1.2;
+/// A part moved by more than this share of the inlier limit, in the mean square.
+constexpr double kMoved = 0.6;
 
 /// A part explains more than half of what moved about it: around a joint that is all but the skin there. Of
 /// what bends, one motion explains a piece.
 constexpr double kMostOfWhatMoved = 0.5;
 
-/// Share of what moved farther than grow() lets a part deviate, connected with the part, that is of the part.
+/// Share of what moved by `least` or more, connected with the part, that is of the part.
 double explained_share(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
-                       const RigidTransform& region, const Attempt& attempt, double limit) noexcept {
+                       const RigidTransform& region, const Attempt& attempt, double least) noexcept {
   double all = attempt.points;
-  const double least = kDeviation * limit;
   (void)flood(patches, attempt.set, [&](std::size_t, std::size_t q) {
     if (!counts(warp, q, k) || patch_deviation(patches, warp, q, region) < least * least) return false;
     all += warp.seen[q];
@@ -165,8 +164,11 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
   for (std::size_t s = 0; s < seed_count; ++s) {
     Attempt attempt;
     attempt.pose = warp.pose[seeds[s]];
+    const double give =
+        std::min(kDeviation * settings.limit,
+                 kShareOfMotion * std::sqrt(patch_deviation(patches, warp, seeds[s], region)));
     for (int round = 0; round < kRounds; ++round) {
-      const PatchSet grown = grow(patches, warp, k, seeds[s], attempt.pose, region, settings.limit);
+      const PatchSet grown = grow(patches, warp, k, seeds[s], attempt.pose, region, give);
       if (grown == attempt.set) break;
       attempt.set = grown;
       attempt.pose = fit_patches(patches, warp, attempt.set, attempt.pose);
@@ -176,7 +178,7 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
     const double own = std::sqrt(attempt.own / attempt.points),
                  off = std::sqrt(attempt.region / attempt.points);
     if (off < moved || off < 2 * own || attempt.region - attempt.own <= best ||
-        (!adrift && explained_share(patches, warp, k, region, attempt, settings.limit) < kMostOfWhatMoved))
+        (!adrift && explained_share(patches, warp, k, region, attempt, give) < kMostOfWhatMoved))
       continue;
     best = attempt.region - attempt.own;
     part.patches = attempt.set;
