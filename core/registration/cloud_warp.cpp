@@ -58,7 +58,7 @@ void warp_cloud(RegistrationState& s, const CloudWarpSettings& settings, Instanc
     static_cast<void>(w.room.target_grid.build(w.room.targets.first(targets), 2 * s.spacing));
     // A border edge gives by `strain` of its length, or bends by that angle, where a reading is off by a
     // quarter of the spacing: what sampling leaves.
-    const double noise = 0.25 * s.spacing, strain = 0.1 + 0.4 * settings.material;
+    const double noise = 0.25 * s.spacing, strain = 0.1 + 0.4 * s.model.material();
     const double stretch = noise * noise / (strain * strain * s.model.spacing() * s.model.spacing());
     const double bend = noise * noise / (strain * strain);
     for (int round = 0; round < settings.rounds; ++round) {
