@@ -22,6 +22,8 @@ struct WarpRoom {
   std::array<std::uint32_t, kMaxPatches> hold{};  ///< points that its home explains
   std::array<std::array<std::uint32_t, limits::kMaxRegions>, kMaxPatches> counts{};
 
+  std::array<std::uint32_t, kMaxPatches> readings{};  ///< of this round
+
   std::array<std::uint32_t, kMaxPatches> borne{};  ///< matches that bear its first pose out
 
   std::span<std::uint16_t> pulls;  ///< numbers of matches that pull
