@@ -26,6 +26,8 @@ inline constexpr std::size_t kMaxPatches = 240;
 /// Borders between patches: on a surface a patch has six neighbours on average, and two patches share a
 /// border.
 inline constexpr std::size_t kMaxBorders = 5 * kMaxPatches;
+/// Links across the body: a patch has one patch, or the border of two, on the other side of it.
+inline constexpr std::size_t kMaxBodyLinks = 2 * kMaxPatches;
 /// Half of the largest extent of a model that can be tracked: 16-bit coordinates at 1/16 mm.
 inline constexpr double kMaxModelHalfExtent = 2.0;
 /// Farthest depth used, metres: 16-bit depth at 1/8 mm.

@@ -17,8 +17,10 @@ struct TrackSteps {
 };
 
 struct TrackSettings {
-  int max_regions = 8;                   ///< rigid regions followed at once, the base included [1, 8]
-  double material = 0.5;                 ///< how easily the object stretches: 0 stiff … 1 soft [0, 1]
+  int max_regions = 8;  ///< rigid regions followed at once, the base included [1, 8]
+  static constexpr double kAsInModel = -1;
+  double material = kAsInModel;  ///< how easily the object stretches: 0 stiff … 1 soft [0, 1], or as
+                                 ///< the model says
   Kernels kernels = Kernels::automatic;  ///< bodies of the integer kernels
   TrackSteps steps;
 };

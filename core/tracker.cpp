@@ -82,7 +82,6 @@ void TrackerState::lay_out(Workspace& workspace, const ModelView& model_view,
       static_cast<std::size_t>(intrinsics.width) * static_cast<std::size_t>(intrinsics.height);
   tables.lay_out(workspace, count);
   surface.lay_out(workspace, intrinsics);
-  patches.lay_out(workspace, count);
   points.lay_out(workspace, count);
   taken_pixels = workspace.take<std::uint32_t>((pixels + 31) / 32);
   positions = workspace.take<Point3f>(count);
@@ -115,6 +114,8 @@ const char* Tracker::start(const ModelView& model, const Intrinsics& camera, con
     return "the model is larger than 4 m; was it built with --units mm?";
   if (settings.max_regions < 1 || settings.max_regions > limits::kMaxRegions)
     return "max_regions must be 1 to 8";
+  if (settings.material != TrackSettings::kAsInModel && !(settings.material >= 0 && settings.material <= 1))
+    return "material must be 0 to 1";
   Workspace workspace(block);
   const std::span<StateStorage> storage = workspace.take<StateStorage>(1);
   if (storage.empty()) return "the tracker's block of memory is too small";
@@ -125,11 +126,12 @@ const char* Tracker::start(const ModelView& model, const Intrinsics& camera, con
   s->camera = camera;
   s->sensor = sensor;
   s->settings = settings;
+  if (settings.material == TrackSettings::kAsInModel) s->settings.material = model.material();
   s->tables.start(s->model);
   s->surface.start(camera, sensor, settings.kernels, settings.steps.input_filter);
   s->projector.start(camera);
   s->tolerance = {&s->surface, s->tables.spacing};
-  s->patches.start(s->tables, s->points.queue);
+  s->patches.start(s->model);
   s->points.reset();
   s->detector.start(s->model, camera, sensor, settings.kernels);
   state_ = s;

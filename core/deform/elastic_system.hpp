@@ -11,7 +11,8 @@
 
 namespace pliant {
 
-/// A border between two patches. Stretching it is stiff, bending it is soft.
+/// A border between two patches, or what ties them across the body. Stretching it is stiff, bending it is
+/// soft.
 struct ElasticLink {
   std::uint8_t a = 0, b = 0;
   double stretch = 0;    ///< stiffness of the point where they meet, in weighted readings
@@ -47,7 +48,7 @@ class ElasticSystem {
   std::size_t count_ = 0, links_count_ = 0, moving_count_ = 0;
   std::array<bool, kMaxPatches> held_{};
   std::array<std::uint8_t, kMaxPatches> moving_{};  // those that are not held, ascending
-  std::array<ElasticLink, kMaxBorders> links_;
+  std::array<ElasticLink, kMaxBorders + kMaxBodyLinks> links_;
   std::array<Symmetric6, kMaxPatches> own_, block_;
   std::array<Factor6, kMaxPatches> factor_;
   Vectors force_, x_, residual_, direction_, scratch_;

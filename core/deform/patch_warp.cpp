@@ -86,6 +86,40 @@ void add_borders(const PatchTables& patches, const Material& material, PatchWarp
   }
 }
 
+/// A patch with less than this share of the readings that it could have, two or three of them, is not seen.
+constexpr double kFewReadings = 0.1;
+
+/// Across the body, what is seen to be off its region takes along what is not seen. What is seen where its
+/// region is says no more than the region's own pull does; between two that are seen, or two of different
+/// regions, there is nothing to add, and of two that nobody sees neither knows better.
+bool takes_along(const PatchTables& patches, const PatchWarp& warp, const PatchTie& tie) noexcept {
+  const auto is_seen = [&](std::size_t p) { return warp.seen[p] >= kFewReadings * patches.sizes[p]; };
+  const auto leads = [&](std::size_t p, std::size_t other) {
+    return is_seen(p) && !warp.held[p] && !is_seen(other);
+  };
+  return warp.home[tie.a] == warp.home[tie.b] && (leads(tie.a, tie.b) || leads(tie.b, tie.a));
+}
+
+/// What lies between two patches is as stiff as the surface is along itself, each look into the body worth an
+/// edge, up to the strain that the material stands: beyond it, it gives way to a dent.
+void add_ties(const PatchTables& patches, const Material& material, PatchWarp& warp) noexcept {
+  for (std::size_t k = 0; k < patches.tie_count; ++k) {
+    const PatchTie& tie = patches.ties[k];
+    if (!takes_along(patches, warp, tie)) continue;
+    const RigidTransform &a = warp.pose[tie.a], &b = warp.pose[tie.b];
+    const Vector3 at_a = a * tie.middle, at_b = b * tie.middle;
+    ElasticLink link;
+    link.a = tie.a;
+    link.b = tie.b;
+    const double give = material.strain * tie.length;
+    link.stretch = tie.looks * material.noise * material.noise / (give * give) *
+                   giving_way((at_a - at_b).squaredNorm(), give);
+    link.arm_a = at_a - a * patches.centres[tie.a];
+    link.arm_b = at_b - b * patches.centres[tie.b];
+    warp.system.add_link(link, at_a - at_b, Vector3::Zero());
+  }
+}
+
 /// What smoothing over nine pixels leaves of σ: residuals below it tell no place from another.
 constexpr double kSmoothedNoise = 0.35;
 /// Mean squares of a dozen readings differ by half of themselves by chance.
@@ -141,9 +175,16 @@ ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const
 /// the anchors take the larger part.
 constexpr int kReachOfSprings = 3;
 
-/// The patches that may move off their regions: those that are off them, and what their springs reach.
-ChosenPatches moving_patches(const PatchTables& patches, const ChosenPatches& astray) noexcept {
+/// The patches that may move off their regions: those that are off them, what they take along across the
+/// body, and what their springs reach.
+ChosenPatches moving_patches(const PatchTables& patches, const PatchWarp& warp,
+                             const ChosenPatches& astray) noexcept {
   ChosenPatches moving = astray;
+  for (std::size_t k = 0; k < patches.tie_count; ++k) {
+    const PatchTie& tie = patches.ties[k];
+    if ((astray[tie.a] || astray[tie.b]) && takes_along(patches, warp, tie))
+      moving[tie.a] = moving[tie.b] = true;
+  }
   for (int ring = 0; ring < kReachOfSprings; ++ring) {
     const ChosenPatches inner = moving;
     for (std::size_t k = 0; k < patches.border_count; ++k) {
@@ -180,6 +221,7 @@ bool balance(const PatchLook& look, const RegionSet& regions, const PointState& 
     add_anchor(look.patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
   }
   add_borders(look.patches, material, warp);
+  add_ties(look.patches, material, warp);
   const double still = kNothing * material.noise;
   if (!warp.system.solve(iterations, 6 * still * still * static_cast<double>(moving_count))) return false;
   for (std::size_t p = 0; p < count; ++p) {
@@ -233,7 +275,8 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
   const std::array<RigidTransform, kMaxPatches> before = warp.pose;
-  const ChosenPatches moving = moving_patches(patches, return_home(look, regions, points, noise, warp));
+  const ChosenPatches astray = return_home(look, regions, points, noise, warp);
+  const ChosenPatches moving = moving_patches(patches, warp, astray);
   ChosenPatches active = moving;
   for (int round = 0; round < settings.rounds; ++round) {
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);

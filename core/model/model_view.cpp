@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "core/model/network_checks.hpp"
+
 namespace pliant {
 
 namespace {
@@ -25,7 +27,8 @@ bool section(std::span<const std::byte> image, std::uint64_t offset, std::size_t
 bool header_is_sane(const ModelHeader& h) {
   bool good = finite(h.spacing) && h.spacing > 0 && finite(h.radius) && h.radius > 0 &&
               finite(h.support_radius) && h.support_radius > 0 && h.characterisability >= 0 &&
-              h.characterisability <= 1;
+              h.characterisability <= 1 && h.material >= 0 && h.material <= 1 && finite(h.patch_radius) &&
+              h.patch_radius > 0;
   for (int i = 0; i < 3; ++i)
     good = good && finite(h.centre[i]) && finite(h.lowest[i]) && finite(h.highest[i]) &&
            h.lowest[i] <= h.highest[i];
@@ -70,13 +73,13 @@ const char* describe(ModelFault fault) noexcept {
     case ModelFault::newer_version:
       return "was written by a newer version; update pliant or build it again";
     case ModelFault::older_version:
-      return "was written by an older version; build it again";
+      return "was written by an older version; build it again with 'pliant model build'";
     case ModelFault::truncated:
       return "is not as long as it says (cut short?); copy or build it again";
     case ModelFault::corrupt:
       return "is corrupt (its checksum or contents are wrong); copy or build it again";
     case ModelFault::over_limit:
-      return "holds more points than this version can track; build it again";
+      return "holds more than this version can track; build it again";
   }
   return "is not usable";
 }
@@ -107,9 +110,12 @@ ModelFault ModelView::open(std::span<const std::byte> image, ModelView& view) no
   if (header->bytes > image.size()) return ModelFault::truncated;
   if (header->bytes != image.size() || header->bytes % 8 != 0) return ModelFault::corrupt;
   if (model_checksum(image) != header->checksum) return ModelFault::corrupt;
-  if (header->point_count > limits::kMaxModelPoints || header->keypoint_count > limits::kMaxModelKeypoints)
+  if (header->point_count > limits::kMaxModelPoints || header->keypoint_count > limits::kMaxModelKeypoints ||
+      header->patch_count > limits::kMaxPatches || header->surface_link_count > limits::kMaxBorders ||
+      header->body_link_count > limits::kMaxBodyLinks)
     return ModelFault::over_limit;
-  if (header->point_count == 0 || header->keypoint_count > header->point_count || !header_is_sane(*header))
+  if (header->point_count == 0 || header->keypoint_count > header->point_count || header->patch_count == 0 ||
+      header->patch_count > header->point_count || !header_is_sane(*header))
     return ModelFault::corrupt;
 
   const std::size_t points = header->point_count, keypoints = header->keypoint_count;
@@ -119,9 +125,15 @@ ModelFault ModelView::open(std::span<const std::byte> image, ModelView& view) no
       !section(image, header->normals_offset, points, candidate.normals_) ||
       !section(image, header->neighbours_offset, points * limits::kNeighbours, candidate.neighbours_) ||
       !section(image, header->descriptors_offset, keypoints, candidate.descriptors_) ||
-      !section(image, header->frames_offset, keypoints, candidate.frames_))
+      !section(image, header->frames_offset, keypoints, candidate.frames_) ||
+      !section(image, header->patch_of_offset, points, candidate.patch_of_) ||
+      !section(image, header->blends_offset, points, candidate.blends_) ||
+      !section(image, header->patches_offset, header->patch_count, candidate.patches_) ||
+      !section(image, header->surface_links_offset, header->surface_link_count, candidate.surface_links_) ||
+      !section(image, header->body_links_offset, header->body_link_count, candidate.body_links_))
     return ModelFault::corrupt;
-  if (!contents_are_sane(candidate, candidate.neighbours_)) return ModelFault::corrupt;
+  if (!contents_are_sane(candidate, candidate.neighbours_) || !network_is_sane(candidate))
+    return ModelFault::corrupt;
   view = candidate;
   return ModelFault::none;
 }

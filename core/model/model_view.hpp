@@ -9,6 +9,7 @@
 
 #include "core/geometry/rigid_transform.hpp"
 #include "core/limits.hpp"
+#include "core/model/spring_network.hpp"
 
 namespace pliant {
 
@@ -36,7 +37,7 @@ struct LocalFrame {
 struct ModelHeader {
   static constexpr std::array<char, 8> kMagic = {'P', 'L', 'I', 'A', 'N', 'T', 'M', '\n'};
   static constexpr std::uint32_t kByteOrder = 0x01020304;
-  static constexpr std::uint32_t kVersion = 2;  ///< 2: descriptors do without what faces away
+  static constexpr std::uint32_t kVersion = 3;  ///< 3: holds the spring network
   enum Flags : std::uint32_t {
     kCharacterisable = 1,  ///< its shape tells where it is; not so for a sphere or a plane
     kClosedSurface = 2,    ///< built from a mesh without a border
@@ -73,9 +74,20 @@ struct ModelHeader {
   std::uint64_t neighbours_offset = 0;   ///< uint16[point_count][kNeighbours], nearest first, 0xFFFF none
   std::uint64_t descriptors_offset = 0;  ///< Descriptor[keypoint_count]
   std::uint64_t frames_offset = 0;       ///< LocalFrame[keypoint_count]
-  std::uint64_t reserved[8] = {0, 0, 0, 0, 0, 0, 0, 0};
+  std::uint32_t patch_count = 0;
+  std::uint32_t surface_link_count = 0;
+  std::uint32_t body_link_count = 0;
+  std::uint32_t pad = 0;
+  double material = 0.5;                   ///< how easily the object stretches: 0 stiff … 1 soft [0, 1]
+  double patch_radius = 0;                 ///< of the disc as wide as a patch, metres
+  std::uint64_t patch_of_offset = 0;       ///< uint8[point_count], the patch that the point belongs to
+  std::uint64_t blends_offset = 0;         ///< PointBlend[point_count]
+  std::uint64_t patches_offset = 0;        ///< ModelPatch[patch_count]
+  std::uint64_t surface_links_offset = 0;  ///< SurfaceLink[surface_link_count], ascending by (a, b)
+  std::uint64_t body_links_offset = 0;     ///< BodyLink[body_link_count], ascending by (a, b)
+  std::uint64_t reserved[7] = {0, 0, 0, 0, 0, 0, 0};
 };
-static_assert(sizeof(ModelHeader) == 256 && sizeof(ModelHeader) % 64 == 0);
+static_assert(sizeof(ModelHeader) == 320 && sizeof(ModelHeader) % 64 == 0);
 static_assert(sizeof(Descriptor) == kDescriptorSize && sizeof(LocalFrame) == 18);
 
 inline constexpr std::uint16_t kNoNeighbour = 0xFFFF;
@@ -100,8 +112,8 @@ class ModelView {
  public:
   ModelView() noexcept = default;
   /// Checks `image` (8-byte aligned) in full: header, checksum, every offset and index, finite numbers, unit
-  /// normals, the range of descriptors and frames. On success `view` looks into `image`, which must outlive
-  /// it.
+  /// normals, the range of descriptors and frames, the spring network. On success `view` looks into `image`,
+  /// which must outlive it.
   [[nodiscard]] static ModelFault open(std::span<const std::byte> image, ModelView& view) noexcept;
 
   [[nodiscard]] bool empty() const noexcept { return header_ == nullptr; }
@@ -116,6 +128,14 @@ class ModelView {
   }
   [[nodiscard]] std::span<const Descriptor> descriptors() const noexcept { return descriptors_; }
   [[nodiscard]] std::span<const LocalFrame> frames() const noexcept { return frames_; }
+  /// The spring network; see spring_network.hpp.
+  [[nodiscard]] std::span<const std::uint8_t> patch_of() const noexcept { return patch_of_; }
+  [[nodiscard]] std::span<const PointBlend> blends() const noexcept { return blends_; }
+  [[nodiscard]] std::span<const ModelPatch> patches() const noexcept { return patches_; }
+  [[nodiscard]] std::span<const SurfaceLink> surface_links() const noexcept { return surface_links_; }
+  [[nodiscard]] std::span<const BodyLink> body_links() const noexcept { return body_links_; }
+  [[nodiscard]] double patch_radius() const noexcept { return header_->patch_radius; }
+  [[nodiscard]] double material() const noexcept { return header_->material; }
   [[nodiscard]] double spacing() const noexcept { return header_->spacing; }
   [[nodiscard]] Vector3 centre() const noexcept {
     return {header_->centre[0], header_->centre[1], header_->centre[2]};
@@ -132,6 +152,11 @@ class ModelView {
   std::span<const std::uint16_t> neighbours_;
   std::span<const Descriptor> descriptors_;
   std::span<const LocalFrame> frames_;
+  std::span<const std::uint8_t> patch_of_;
+  std::span<const PointBlend> blends_;
+  std::span<const ModelPatch> patches_;
+  std::span<const SurfaceLink> surface_links_;
+  std::span<const BodyLink> body_links_;
 };
 
 /// ModelHeader::checksum of an image, whose size must be a multiple of eight.

@@ -14,6 +14,33 @@ namespace {
 constexpr double kFirstGate = 0.25, kLastSpacings = 2.5;  // of the model's radius; of the spacing
 constexpr double kHold = 1.0;  // of a patch's points: what its region's pull is worth where it explains it
 
+/// A patch with fewer readings than this share of its points is not seen.
+constexpr double kFewReadings = 0.1;
+
+/// Across the body, what the scene shows takes along what it does not, up to the strain that the material
+/// stands, as the tracker's warp does. `stiffness`: of a look one metre long.
+void add_ties(Warp& w, double stiffness, double strain) noexcept {
+  const PatchTables& patches = w.room.patches;
+  const auto is_seen = [&](std::size_t p) {
+    return w.room.rigid[p] || w.room.readings[p] >= kFewReadings * patches.sizes[p];
+  };
+  for (std::size_t k = 0; k < patches.tie_count; ++k) {
+    const PatchTie& tie = patches.ties[k];
+    if (is_seen(tie.a) == is_seen(tie.b)) continue;
+    const RigidTransform &a = w.room.pose[tie.a], &b = w.room.pose[tie.b];
+    const Vector3 at_a = a * tie.middle, at_b = b * tie.middle;
+    const double give = strain * tie.length, square = (at_a - at_b).squaredNorm();
+    const double left = give * give / (give * give + square);
+    ElasticLink link;
+    link.a = tie.a;
+    link.b = tie.b;
+    link.stretch = tie.looks * stiffness / (tie.length * tie.length) * left * left;
+    link.arm_a = at_a - a * patches.centres[tie.a];
+    link.arm_b = at_b - b * patches.centres[tie.b];
+    w.room.system.add_link(link, at_a - at_b, Vector3::Zero());
+  }
+}
+
 void add_springs(Warp& w, double stretch, double bend) noexcept {
   const PatchTables& patches = w.room.patches;
   for (std::size_t p = 0; p < patches.count; ++p) {
@@ -58,7 +85,7 @@ void warp_cloud(RegistrationState& s, const CloudWarpSettings& settings, Instanc
     static_cast<void>(w.room.target_grid.build(w.room.targets.first(targets), 2 * s.spacing));
     // A border edge gives by `strain` of its length, or bends by that angle, where a reading is off by a
     // quarter of the spacing: what sampling leaves.
-    const double noise = 0.25 * s.spacing, strain = 0.1 + 0.4 * settings.material;
+    const double noise = 0.25 * s.spacing, strain = 0.1 + 0.4 * s.model.material();
     const double stretch = noise * noise / (strain * strain * s.model.spacing() * s.model.spacing());
     const double bend = noise * noise / (strain * strain);
     for (int round = 0; round < settings.rounds; ++round) {
@@ -72,6 +99,7 @@ void warp_cloud(RegistrationState& s, const CloudWarpSettings& settings, Instanc
       // What descriptors say is good to a keypoint's distance.
       if (done < 0.7) add_pulls(w, pulls, 4 * (1 - done), 2 * first * (1 - done) + 2 * match_tolerance(s));
       add_springs(w, stiff * stretch, stiff * bend);
+      add_ties(w, stiff * bend, strain);
       if (!w.room.system.solve(settings.iterations)) break;
       for (std::size_t p = 0; p < w.room.patches.count; ++p) {
         const Vector6& x = w.room.system.motion(p);

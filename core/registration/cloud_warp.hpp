@@ -9,9 +9,8 @@
 namespace pliant {
 
 struct CloudWarpSettings {
-  int rounds = 10;        ///< of looking up the scene and solving [1, 64]
-  int iterations = 16;    ///< of the solver in each round [1, 64]
-  double material = 0.5;  ///< 0 stiff … 1 soft [0, 1]
+  int rounds = 10;      ///< of looking up the scene and solving [1, 64]
+  int iterations = 16;  ///< of the solver in each round [1, 64]
 };
 
 /// From the chain's regions and labels: `buffers.positions` of all points (scene frame). Regions hold their

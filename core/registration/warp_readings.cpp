@@ -47,6 +47,7 @@ void add_pair(Warp& w, std::size_t k, std::size_t j, double gate) noexcept {
   const Vector3 at = to_vector(w.room.places[k]), to = to_vector(w.room.targets[j]);
   const Vector3 normal = to_vector(unit(w.room.target_normals[j]));
   const double weight = tukey((to - at).squaredNorm(), gate);
+  ++w.room.readings[p];
   add_reading(at, to, normal, weight, w.room.pose[p] * w.room.patches.centres[p], w.room.system.own(p),
               w.room.system.force(p));
 }
@@ -106,6 +107,7 @@ void add_pulls(Warp& w, std::size_t pulls, double weight, double limit) noexcept
 }
 
 void add_readings(Warp& w, std::size_t free_count, std::size_t target_count, double gate) noexcept {
+  w.room.readings.fill(0);
   const auto reach = static_cast<float>(gate);
   for (std::size_t k = 0; k < free_count; ++k) {
     const Point3f& n = w.room.normals[k];

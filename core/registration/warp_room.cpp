@@ -3,9 +3,6 @@
 namespace pliant {
 
 void WarpRoom::lay_out(Workspace& workspace, std::size_t model_points, std::size_t scene_points) noexcept {
-  tables.lay_out(workspace, model_points);
-  patches.lay_out(workspace, model_points);
-  queue = workspace.take<std::uint16_t>(model_points);
   pulls = workspace.take<std::uint16_t>(model_points);
   free = workspace.take<std::uint16_t>(model_points);
   places = workspace.take<Point3f>(model_points);
@@ -17,8 +14,7 @@ void WarpRoom::lay_out(Workspace& workspace, std::size_t model_points, std::size
 }
 
 void WarpRoom::start(const ModelView& model) noexcept {
-  tables.start(model);
-  patches.start(tables, queue);
+  patches.start(model);
 }
 
 }  // namespace pliant

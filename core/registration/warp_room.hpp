@@ -13,7 +13,6 @@
 namespace pliant {
 
 struct WarpRoom {
-  ModelTables tables;
   PatchTables patches;
   ElasticSystem system;
   std::array<RigidTransform, kMaxPatches> pose;   ///< scene <- model
@@ -23,10 +22,11 @@ struct WarpRoom {
   std::array<std::uint32_t, kMaxPatches> hold{};  ///< points that its home explains
   std::array<std::array<std::uint32_t, limits::kMaxRegions>, kMaxPatches> counts{};
 
+  std::array<std::uint32_t, kMaxPatches> readings{};  ///< of this round
+
   std::array<std::uint32_t, kMaxPatches> borne{};  ///< matches that bear its first pose out
 
   std::span<std::uint16_t> pulls;  ///< numbers of matches that pull
-  std::span<std::uint16_t> queue;  ///< scratch
   std::span<std::uint16_t> free;   ///< points of patches that may move, and where they are
   std::span<Point3f> places, normals;
   std::span<Point3f> targets;  ///< the scene around them

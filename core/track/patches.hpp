@@ -6,11 +6,11 @@
 #include <span>
 
 #include "core/limits.hpp"
-#include "core/memory/workspace.hpp"
-#include "core/track/model_tables.hpp"
+#include "core/model/model_view.hpp"
 
 namespace pliant {
 
+using limits::kMaxBodyLinks;
 using limits::kMaxBorders;
 using limits::kMaxPatches;
 
@@ -33,29 +33,30 @@ struct PatchBorder {
   double length = 0;                 ///< from one patch's centre to the other's, metres
 };
 
-/// The patches that a point moves with when the surface bends.
-struct PointBlend {
-  static constexpr int kShift = 7;
-  std::array<std::uint8_t, 4> patch{};
-  std::array<std::uint8_t, 4> weight{};  ///< Q7, sum 128
+/// What lies between two patches on opposite sides of the body.
+struct PatchTie {
+  std::uint8_t a = 0, b = 0;
+  std::uint32_t looks = 0;           ///< from either patch that met the other
+  Vector3 middle = Vector3::Zero();  ///< between its ends, model frame, metres
+  double length = 0;                 ///< from one end to the other, metres
 };
 
-/// Every point belongs to the patch of the seed that is nearest along the surface graph; the seeds are the
-/// first points of the model, a uniform sampling.
+/// The model's spring network as the frame path works on it.
 struct PatchTables {
   std::size_t count = 0;
   double radius = 0;                               ///< of a patch, metres
-  std::span<std::uint8_t> patch_of;                ///< by model point
-  std::span<PointBlend> blend;                     ///< by model point
-  std::array<PatchSet, kMaxPatches> neighbours{};  ///< that share an edge of the graph
+  std::span<const std::uint8_t> patch_of;          ///< by model point
+  std::span<const PointBlend> blend;               ///< by model point
+  std::array<PatchSet, kMaxPatches> neighbours{};  ///< that share a border
   std::array<std::uint32_t, kMaxPatches> sizes{};  ///< points
   std::array<Vector3, kMaxPatches> centres;        ///< model frame, metres
   std::array<PatchBorder, kMaxBorders> borders;    ///< ascending by (a, b)
-  std::size_t border_count = 0;  ///< at most kMaxBorders; further ones hold nothing together
+  std::size_t border_count = 0;              ///< at most kMaxBorders; further ones hold nothing together
+  std::array<PatchTie, kMaxBodyLinks> ties;  ///< ascending by (a, b)
+  std::size_t tie_count = 0;
 
-  void lay_out(Workspace& workspace, std::size_t points) noexcept;
-  /// `queue`: scratch of the model's size.
-  void start(const ModelTables& model, std::span<std::uint16_t> queue) noexcept;
+  /// Looks into `model`, which must outlive it.
+  void start(const ModelView& model) noexcept;
 };
 
 }  // namespace pliant

@@ -22,6 +22,19 @@ const char* describe(ModelHeader::Ambiguity ambiguity) noexcept {
   return "";
 }
 
+namespace {
+
+template <typename Link>
+std::string describe_links(std::span<const Link> links) {
+  if (links.empty()) return "none";
+  double sum = 0;
+  for (const Link& link : links) sum += link.length;
+  return fmt::format("{}, {:.1f} mm long on average", links.size(),
+                     1000 * sum / static_cast<double>(links.size()));
+}
+
+}  // namespace
+
 std::string describe_model(const ModelView& model) {
   const ModelHeader& h = model.header();
   const auto ambiguity = static_cast<ModelHeader::Ambiguity>(h.ambiguity);
@@ -35,6 +48,11 @@ std::string describe_model(const ModelView& model) {
                       1000 * (h.highest[1] - h.lowest[1]), 1000 * (h.highest[2] - h.lowest[2]));
   text += fmt::format("centre: {:.4f} {:.4f} {:.4f} m\n", h.centre[0], h.centre[1], h.centre[2]);
   text += fmt::format("descriptor radius: {:.1f} mm\n", 1000 * h.support_radius);
+  text +=
+      fmt::format("patches: {}, {:.1f} mm in radius\n", model.patches().size(), 1000 * model.patch_radius());
+  text += fmt::format("links along the surface: {}\n", describe_links(model.surface_links()));
+  text += fmt::format("links across the body: {}\n", describe_links(model.body_links()));
+  text += fmt::format("material: {:g} (0 stiff, 1 soft)\n", model.material());
   text += fmt::format("surface: {}\n", (h.flags & ModelHeader::kClosedSurface) != 0 ? "closed" : "open");
   if ((h.flags & ModelHeader::kFrontOnly) != 0) text += "back: unknown\n";
   text += model.characterisable()

@@ -18,6 +18,8 @@
 #include "drivers/model_files/model_image.hpp"
 #include "drivers/model_files/nearest.hpp"
 #include "drivers/model_files/neighbour_graph.hpp"
+#include "drivers/model_files/outside_view.hpp"
+#include "drivers/model_files/spring_network.hpp"
 #include "drivers/model_files/surface_sampling.hpp"
 #include "drivers/model_files/symmetry.hpp"
 
@@ -200,6 +202,12 @@ Keypoints describe_keypoints(const OrientedPoints& points, std::size_t count, do
   return keypoints;
 }
 
+/// Whether next to nothing of the inside can be seen, as with a scan that has some holes: there is a body.
+bool encloses(const OrientedCloud& cloud, double spacing) {
+  constexpr double kNearlyAll = 0.9;
+  return outside_share(cloud, spacing) > kNearlyAll;
+}
+
 void warn_about_size(const BuiltModel& built, double metres_per_unit, std::vector<std::string>& warnings) {
   const double largest = std::max({built.extent[0], built.extent[1], built.extent[2]});
   if (largest > 5)
@@ -223,6 +231,8 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
     return refuse(fmt::format("{} metres per unit is out of range [1e-6, 1e3]", settings.metres_per_unit));
   if (!(settings.spacing >= 0 && settings.spacing <= 1))
     return refuse(fmt::format("a spacing of {} m is out of range (0, 1]", settings.spacing));
+  if (!(settings.material >= 0 && settings.material <= 1))
+    return refuse(fmt::format("a material of {} is out of range [0, 1]", settings.material));
 
   const double farthest = farthest_coordinate(geometry) * settings.metres_per_unit;
   if (farthest > kFarthestCoordinate)
@@ -252,6 +262,7 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   measure(positions, header);
   if (!(header.spacing > 0 && header.radius > 0))
     return refuse("its points coincide as far as numbers tell; check the file and --units");
+  header.material = settings.material;
   header.support_radius = support_radius_for(header.spacing, header.radius);
 
   const Characterisability shape = characterise(cloud, header.spacing);
@@ -265,8 +276,14 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   const std::vector<std::uint16_t> neighbours = neighbour_graph(cloud, header.spacing);
   const std::size_t keypoint_count = std::min(cloud.points.size(), limits::kMaxModelKeypoints);
   const Keypoints keypoints = describe_keypoints({positions, normals}, keypoint_count, header.support_radius);
-  built.image =
-      make_model_image({header, positions, normals, neighbours, keypoints.descriptors, keypoints.frames});
+  const SpringNetwork network = spring_network({positions,
+                                                normals,
+                                                neighbours,
+                                                header.spacing,
+                                                {header.centre[0], header.centre[1], header.centre[2]},
+                                                built.closed_surface || encloses(cloud, header.spacing)});
+  built.image = make_model_image(
+      {header, positions, normals, neighbours, keypoints.descriptors, keypoints.frames, network});
 
   built.points = positions.size();
   built.keypoints = keypoint_count;

@@ -16,6 +16,7 @@ struct ModelBuildSettings {
   double spacing = 0;          ///< wished distance between points, metres; 0: derived from the surface (0, 1]
   bool wound_outward = false;  ///< the input's triangles are known to be: their winding is not looked into
   bool front_only = false;     ///< the back is unknown, and the model says so
+  double material = 0.5;       ///< how easily the object stretches: 0 stiff … 1 soft [0, 1]
 };
 
 /// How the points of a model came about.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/model_view.hpp"
+#include "drivers/model_files/spring_network.hpp"
 
 namespace pliant {
 
@@ -18,6 +19,7 @@ struct ModelParts {
   std::span<const std::uint16_t> neighbours;
   std::span<const Descriptor> descriptors;
   std::span<const LocalFrame> frames;
+  const SpringNetwork& network;
 };
 
 [[nodiscard]] std::vector<std::byte> make_model_image(const ModelParts& parts);

@@ -45,6 +45,7 @@ int write_captured_model(const CapturedModelOptions& options, const ObjectCaptur
   ModelBuildSettings settings;
   settings.wound_outward = true;
   settings.spacing = captured_spacing(mesh, options.sigma);
+  settings.material = options.material;
   const Coverage& coverage = capture.coverage();
   // Half a turn and more shows some of every side.
   settings.front_only = coverage.sectors_seen() <= Coverage::kSectors / 2;

@@ -12,6 +12,7 @@ struct CapturedModelOptions {
   std::string ply;       ///< mesh file; empty: none
   double clearance = 0;  ///< metres above the table that are cut away
   double sigma = 0;      ///< of the sensor's readings where objects are usually shown, metres
+  double material = 0;   ///< 0 stiff … 1 soft [0, 1]
 };
 
 /// Cleans the captured surface, writes the files and prints what came out. Where the model's own place cannot

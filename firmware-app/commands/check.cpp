@@ -75,7 +75,7 @@ int check(const std::string& path) {
   if (all->has_model) {
     TrackSettings settings;
     settings.max_regions = config->track.max_regions;
-    settings.material = config->track.material;
+    settings.material = config->track.material.value_or(TrackSettings::kAsInModel);
     text += fmt::format("memory, MB: {}\n", describe(plan_memory(all->model, all->camera, settings)));
   } else {
     text += "memory: follows from the model; none is given\n";

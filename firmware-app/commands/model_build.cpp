@@ -14,7 +14,7 @@ namespace {
 
 struct BuildOptions {
   std::string input, output, units = "m";
-  double spacing = 0;
+  double spacing = 0, material = ModelBuildSettings().material;
 };
 
 int build(const BuildOptions& options) {
@@ -26,6 +26,7 @@ int build(const BuildOptions& options) {
   ModelBuildSettings settings;
   settings.metres_per_unit = options.units == "mm" ? 0.001 : 1;
   settings.spacing = options.spacing;
+  settings.material = options.material;
   line.show("building the model: points, normals, descriptors");
   const Result<BuiltModel> built = build_model(*geometry, settings);
   line.clear();
@@ -58,6 +59,13 @@ void add_model_build(CLI::App& model, Work& work) {
                   "Distance between the model's points, metres; left out: derived from the surface")
       ->check(CLI::Range(1e-5, 1.0).description(""))
       ->type_name("M");
+  app->add_option(
+         "--material", options->material,
+         "How easily the object stretches, 0 stiff like leather to 1 soft like fleece; 'track.material' "
+         "in a config overrides it")
+      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->type_name("0..1")
+      ->capture_default_str();
   app->callback([options, &work] { work = [options] { return build(*options); }; });
 }
 

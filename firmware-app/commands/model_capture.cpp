@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/capture/object_capture.hpp"
+#include "drivers/model_files/model_builder.hpp"
 #include "drivers/recording/pose_list.hpp"
 #include "drivers/view_files/view_files.hpp"
 #include "firmware-app/commands/capture_guide.hpp"
@@ -28,6 +29,7 @@ struct CaptureOptions {
   std::vector<int> at;
   std::int64_t frames = -1;
   CaptureSettings capture;
+  double material = ModelBuildSettings().material;
   std::vector<StampedPose> known;  ///< what --poses names
 };
 
@@ -206,7 +208,8 @@ int capture(const CaptureOptions& given) {
   const JointFit joint = object.finish();
   line.clear();
   const int code = write_captured_model(
-      {options.output, options.ply, options.capture.clearance, usual_noise(sensor)}, object, joint);
+      {options.output, options.ply, options.capture.clearance, usual_noise(sensor), options.material}, object,
+      joint);
   if (code == kExitDone && taken->last == SourceEvent::lost) return report({ErrorKind::device, taken->fault});
   return code;
 }
@@ -240,6 +243,10 @@ void add_model_capture(CLI::App& model, Work& work) {
                   "Take nothing that is less high above the table, metres: for a turntable")
       ->check(CLI::Range(0.0, 0.2).description(""))
       ->type_name("M");
+  app->add_option("--material", options->material, "How easily the object stretches, 0 stiff to 1 soft")
+      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->type_name("0..1")
+      ->capture_default_str();
   app->add_option("--at", options->at,
                   "A pixel of the object in the first picture; left out: what stands in the middle")
       ->expected(2)

@@ -35,7 +35,7 @@ RunSettings settings_of(const RunOptions& options, const Config& config, const D
   settings.version = PLIANT_VERSION;
   settings.sensor = source.sensor();
   settings.track.max_regions = config.track.max_regions;
-  settings.track.material = config.track.material;
+  settings.track.material = config.track.material.value_or(TrackSettings::kAsInModel);
   settings.track.kernels = options.kernels;
   settings.lcm_url = config.lcm.url;
   settings.lcm_prefix = config.lcm.prefix;

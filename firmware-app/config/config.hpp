@@ -1,6 +1,7 @@
 // The program's configuration. A member's name is its key in the TOML file.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,7 +23,7 @@ struct Config {
   struct Track {
     double budget_ms = 33;
     int max_regions = 8;
-    double material = 0.5;
+    std::optional<double> material;  ///< none: as the model says
   } track;
   struct Sensor {
     std::string description;

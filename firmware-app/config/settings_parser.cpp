@@ -76,6 +76,12 @@ struct Assign {
     *to = x;
     return true;
   }
+  bool operator()(std::optional<double>* to) const {
+    double x = 0;
+    if (!(*this)(&x)) return false;
+    *to = x;
+    return true;
+  }
   bool operator()(std::vector<int>* to) const {
     const toml::array* list = node.as_array();
     if (list == nullptr || list->size() > 64) return false;

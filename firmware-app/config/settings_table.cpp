@@ -24,6 +24,9 @@ std::string allowed_values(const Setting& s) {
     std::string operator()(const bool* /*flag*/) const { return "true or false"; }
     std::string operator()(const int* /*number*/) const { return number_range(s, "a whole number"); }
     std::string operator()(const double* /*number*/) const { return number_range(s, "a number"); }
+    std::string operator()(const std::optional<double>* /*number*/) const {
+      return number_range(s, "a number");
+    }
     std::string operator()(const std::vector<int>* /*list*/) const {
       return number_range(s, "a list such as [2, 3] of whole numbers");
     }
@@ -37,6 +40,9 @@ std::string setting_value(const Setting& s) {
     std::string operator()(const bool* flag) const { return *flag ? "true" : "false"; }
     std::string operator()(const int* number) const { return fmt::format("{}", *number); }
     std::string operator()(const double* number) const { return fmt::format("{:g}", *number); }
+    std::string operator()(const std::optional<double>* number) const {
+      return *number ? fmt::format("{:g}", **number) : "(left out)";
+    }
     std::string operator()(const std::vector<int>* list) const {
       return fmt::format("[{}]", fmt::join(*list, ", "));
     }

@@ -1,6 +1,7 @@
 // Tables of settings: every key of a TOML file declared once, with its range, unit and meaning.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,7 +13,8 @@
 namespace pliant {
 
 /// Where a setting's value lives, in type-erased form; the constructors keep the types right.
-using SettingTarget = std::variant<std::string*, bool*, int*, double*, std::vector<int>*>;
+using SettingTarget =
+    std::variant<std::string*, bool*, int*, double*, std::optional<double>*, std::vector<int>*>;
 
 /// One key. `low` and `high` bound numbers (each one, in a list) and the length of texts.
 struct Setting {
@@ -36,7 +38,7 @@ inline constexpr std::size_t kMaxSettingsText = std::size_t{1} << 20;
 /// What a key may hold, in words: "a number from 0 to 1", "true or false".
 [[nodiscard]] std::string allowed_values(const Setting& setting);
 
-/// The setting's present value as TOML.
+/// The setting's present value as TOML; "(left out)" where there is none.
 [[nodiscard]] std::string setting_value(const Setting& setting);
 
 /// One line a setting: key, value, allowed values, meaning.

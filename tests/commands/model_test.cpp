@@ -15,6 +15,8 @@ TEST_F(ModelCommand, BuildsFromTheSimulatedObject) {
   EXPECT_NE(built.out.find("keypoints: "), std::string::npos);
   EXPECT_NE(built.out.find("bytes: "), std::string::npos);
   EXPECT_NE(built.out.find("characterisable: yes"), std::string::npos) << built.out;
+  EXPECT_NE(built.out.find("links across the body: "), std::string::npos) << built.out;
+  EXPECT_NE(built.out.find("material: 0.5 "), std::string::npos) << built.out;
 
   const Ended info = run_pliant({"model", "info", at("c.model")});
   EXPECT_EQ(info.code, 0) << info.err;
@@ -37,6 +39,16 @@ TEST_F(ModelCommand, BuildingTwiceGivesTheSameBytes) {
   ASSERT_EQ(run_pliant({"model", "build", "simulated:box", "-o", at("a.model")}).code, 0);
   ASSERT_EQ(run_pliant({"model", "build", "simulated:box", "-o", at("b.model")}).code, 0);
   EXPECT_EQ(read_file(at("a.model")), read_file(at("b.model")));
+}
+
+TEST_F(ModelCommand, TheMaterialIsKeptInTheFile) {
+  ASSERT_EQ(run_pliant({"model", "build", "simulated:box", "-o", at("m"), "--material", "0.25"}).code, 0);
+  const Ended info = run_pliant({"model", "info", at("m")});
+  EXPECT_NE(info.out.find("material: 0.25 "), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("links along the surface: "), std::string::npos) << info.out;
+  const Ended refused = run_pliant({"model", "build", "simulated:box", "-o", at("n"), "--material", "1.5"});
+  EXPECT_EQ(refused.code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("--material"), std::string::npos) << refused.err;
 }
 
 TEST_F(ModelCommand, AFlatPlateIsWrittenAndCalledNotCharacterisable) {
@@ -94,6 +106,10 @@ TEST_F(ModelCommand, DamagedModelFilesAreRefused) {
   newer[12] = 99;
   write_file(at("d.model"), newer);
   expect_refused(run_pliant({"model", "info", at("d.model")}), 2, {"newer"});
+  std::string older = whole;
+  older[12] = 2;
+  write_file(at("d.model"), older);
+  expect_refused(run_pliant({"model", "info", at("d.model")}), 2, {"older", "build it again"});
   write_file(at("d.model"), "ply\nformat ascii 1.0\nend_header\n");
   expect_refused(run_pliant({"model", "info", at("d.model")}), 2, {"not a model"});
 }

@@ -16,6 +16,8 @@
 #include "core/detect/shot.hpp"
 #include "core/memory/row_major.hpp"
 #include "core/model/model_view.hpp"
+#include "drivers/model_files/model_image.hpp"
+#include "drivers/model_files/spring_network.hpp"
 
 namespace pliant::testing {
 
@@ -181,29 +183,16 @@ class TestModel {
     for (std::size_t i = 0; i < h.keypoint_count; ++i)
       static_cast<void>(
           describer.describe(sorted.view(), grid, i, h.support_radius, descriptors[i], frames[i]));
-    std::size_t end = sizeof(ModelHeader);
-    const auto place = [&](std::size_t bytes) {
-      const std::size_t at = end;
-      end = (end + bytes + 63) / 64 * 64;
-      return at;
-    };
-    h.positions_offset = place(n * sizeof(Point3f));
-    h.normals_offset = place(n * sizeof(Normal16));
-    h.neighbours_offset = place(neighbours.size() * sizeof(std::uint16_t));
-    h.descriptors_offset = place(descriptors.size() * sizeof(Descriptor));
-    h.frames_offset = place(frames.size() * sizeof(LocalFrame));
-    h.bytes = end;
-    block_ = AlignedBlock(end);
-    std::byte* image = block_.span().data();
-    std::memset(image, 0, end);
-    std::memcpy(image + h.positions_offset, sorted.positions.data(), n * sizeof(Point3f));
-    std::memcpy(image + h.normals_offset, sorted.normals.data(), n * sizeof(Normal16));
-    std::memcpy(image + h.neighbours_offset, neighbours.data(), neighbours.size() * sizeof(std::uint16_t));
-    std::memcpy(image + h.descriptors_offset, descriptors.data(), descriptors.size() * sizeof(Descriptor));
-    std::memcpy(image + h.frames_offset, frames.data(), frames.size() * sizeof(LocalFrame));
-    std::memcpy(image, &h, sizeof h);
-    h.checksum = model_checksum(block_.span());
-    std::memcpy(image, &h, sizeof h);
+    const SpringNetwork network = spring_network({sorted.positions,
+                                                  sorted.normals,
+                                                  neighbours,
+                                                  h.spacing,
+                                                  {h.centre[0], h.centre[1], h.centre[2]},
+                                                  true});
+    const std::vector<std::byte> image =
+        make_model_image({h, sorted.positions, sorted.normals, neighbours, descriptors, frames, network});
+    block_ = AlignedBlock(image.size());
+    std::copy(image.begin(), image.end(), block_.span().begin());
     fault_ = ModelView::open(block_.span(), view_);
   }
   [[nodiscard]] const ModelView& view() const { return view_; }

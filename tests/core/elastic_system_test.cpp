@@ -93,6 +93,8 @@ class Chain : public ::testing::Test {
       if (p + 1 < kPatches) link(p, p + 1, 5, 0.1);
     }
     link(2, 8, 3, 0.05);
+    link(1, 10, 2, 0);  // across the body: turning is free
+    link(4, 7, 0.5, 0);
     own(0, 100, 10);
     Vector6 pull = Vector6::Zero();
     pull << 0.01, -0.02, 0.03, 0.1, 0.2, -0.1;

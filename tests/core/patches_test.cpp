@@ -2,46 +2,44 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <vector>
-
 #include "tests/core/track_scene.hpp"
 
 namespace pliant {
 namespace {
 
-TEST(Patches, CoverTheSurfaceInEvenConnectedPieces) {
+TEST(Patches, AreThoseOfTheModel) {
   synthetic::TrackScene scene(synthetic::bumpy_body());
   const PatchTables& patches = scene.patches;
-  ASSERT_EQ(patches.count, std::min(kMaxPatches, scene.tables.size / 24));
-  std::vector<std::size_t> members(patches.count, 0);
-  for (std::size_t i = 0; i < scene.tables.size; ++i) {
-    ASSERT_LT(patches.patch_of[i], patches.count);
-    ++members[patches.patch_of[i]];
-  }
-  const std::size_t mean = scene.tables.size / patches.count;
+  const ModelView& model = scene.model;
+  ASSERT_EQ(patches.count, model.patches().size());
+  EXPECT_EQ(patches.radius, model.patch_radius());
   for (std::size_t p = 0; p < patches.count; ++p) {
-    EXPECT_GT(members[p], mean / 4);
-    EXPECT_LT(members[p], mean * 3);
-    EXPECT_EQ(patches.patch_of[p], p);  // its seed is its own
+    EXPECT_EQ(patches.sizes[p], model.patches()[p].points);
+    EXPECT_EQ(patches.centres[p], to_vector(model.patches()[p].centre));
   }
-  // From every point a way along the graph leads to the seed within the patch.
-  std::vector<bool> reached(scene.tables.size, false);
-  std::vector<std::size_t> stack;
-  for (std::size_t p = 0; p < patches.count; ++p) {
-    stack.push_back(p);
-    reached[p] = true;
+  ASSERT_EQ(patches.border_count, model.surface_links().size());
+  for (std::size_t k = 0; k < patches.border_count; ++k) {
+    const PatchBorder& border = patches.borders[k];
+    const SurfaceLink& link = model.surface_links()[k];
+    EXPECT_EQ(border.a, link.a);
+    EXPECT_EQ(border.b, link.b);
+    EXPECT_EQ(border.edges, link.edges);
+    EXPECT_EQ(border.length, link.length);
+    EXPECT_EQ(border.centre, to_vector(link.centre));
   }
-  while (!stack.empty()) {
-    const std::size_t i = stack.back();
-    stack.pop_back();
-    for (const std::uint16_t n : scene.model.neighbours(i)) {
-      if (n == kNoNeighbour || reached[n] || patches.patch_of[n] != patches.patch_of[i]) continue;
-      reached[n] = true;
-      stack.push_back(n);
-    }
+  ASSERT_EQ(patches.tie_count, model.body_links().size());
+  EXPECT_GT(patches.tie_count, 0U);
+  for (std::size_t k = 0; k < patches.tie_count; ++k) {
+    const PatchTie& tie = patches.ties[k];
+    const BodyLink& link = model.body_links()[k];
+    EXPECT_EQ(tie.a, link.a);
+    EXPECT_EQ(tie.b, link.b);
+    EXPECT_EQ(tie.looks, link.looks);
+    EXPECT_EQ(tie.length, link.length);
+    EXPECT_EQ(tie.middle, to_vector(link.middle));
   }
-  EXPECT_EQ(std::count(reached.begin(), reached.end(), false), 0);
+  EXPECT_EQ(patches.patch_of.data(), model.patch_of().data());
+  EXPECT_EQ(patches.blend.data(), model.blends().data());
 }
 
 TEST(Patches, AreNeighboursBothWays) {

@@ -27,7 +27,7 @@ class TrackScene {
     surface.start(camera, SensorDescription());
     projector.start(camera);
     tolerance = {&surface, tables.spacing};
-    patches.start(tables, points.queue);
+    patches.start(model);
     points.reset();
   }
   TrackScene(const TrackScene&) = delete;
@@ -104,7 +104,6 @@ class TrackScene {
   void lay_out(Workspace& workspace) {
     tables.lay_out(workspace, model.size());
     surface.lay_out(workspace, camera);
-    patches.lay_out(workspace, model.size());
     points.lay_out(workspace, model.size());
   }
 

@@ -77,6 +77,27 @@ class TrackerTest : public ::testing::Test {
 std::unique_ptr<Geometry> TrackerTest::mesh_;
 std::unique_ptr<ModelFile> TrackerTest::file_;
 
+TEST_F(TrackerTest, TakesTheModelsMaterialUnlessToldOtherwise) {
+  EXPECT_EQ(TrackSettings().material, TrackSettings::kAsInModel);
+  std::vector<float> energies;
+  for (const double material : {TrackSettings::kAsInModel, model().material(), 0.0}) {
+    TrackSettings settings;
+    settings.material = material;
+    start(settings);
+    tracker_.start_from(pose(0));
+    float energy = 0;
+    for (int frame = 0; frame < 4; ++frame) energy = see(frame).strain_energy;
+    energies.push_back(energy);
+  }
+  EXPECT_EQ(energies[0], energies[1]);
+  EXPECT_NE(energies[0], energies[2]);
+  TrackSettings settings;
+  for (const double wrong : {-0.5, 1.5, std::nan("")}) {
+    settings.material = wrong;
+    EXPECT_NE(tracker_.start(model(), camera_, SensorDescription(), settings, block_), nullptr) << wrong;
+  }
+}
+
 TEST_F(TrackerTest, FollowsAMovingObjectFromAGivenPose) {
   start();
   tracker_.start_from(pose(0));

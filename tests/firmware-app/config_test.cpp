@@ -20,6 +20,7 @@ TEST(Config, EmptyTextKeepsDefaults) {
   EXPECT_EQ(config.lcm.prefix, "PLIANT");
   EXPECT_EQ(config.track.max_regions, 8);
   EXPECT_DOUBLE_EQ(config.track.budget_ms, 33);
+  EXPECT_FALSE(config.track.material);  // the model says it
   EXPECT_TRUE(config.run.affinity.empty());
 }
 
@@ -54,7 +55,7 @@ port = 80
   EXPECT_TRUE(config.lcm.publish_depth);
   EXPECT_DOUBLE_EQ(config.track.budget_ms, 20);
   EXPECT_EQ(config.track.max_regions, 3);
-  EXPECT_DOUBLE_EQ(config.track.material, 0.25);
+  EXPECT_EQ(config.track.material, 0.25);
   EXPECT_EQ(config.sensor.description, "s.toml");
   EXPECT_EQ(config.run.threads, 2);
   EXPECT_EQ(config.run.priority, 10);

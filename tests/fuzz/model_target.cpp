@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/model/model_view.hpp"
+#include "core/track/patches.hpp"
 #include "drivers/model_files/describe_model.hpp"
 #include "drivers/model_files/model_image.hpp"
 #include "tests/fuzz/promises.hpp"
@@ -11,6 +12,26 @@
 namespace pliant {
 
 namespace {
+
+void walk_network(const ModelView& view) {
+  const std::size_t patches = view.patches().size();
+  promise(patches > 0 && patches <= limits::kMaxPatches, "patches within the limit");
+  promise(view.surface_links().size() <= limits::kMaxBorders, "links along the surface within the limit");
+  promise(view.body_links().size() <= limits::kMaxBodyLinks, "links across the body within the limit");
+  for (const ModelPatch& patch : view.patches()) promise(patch.points > 0, "patches have points");
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    promise(view.patch_of()[i] < patches, "points belong to patches");
+    for (const std::uint8_t p : view.blends()[i].patch) promise(p < patches, "blends are of patches");
+  }
+  for (const SurfaceLink& link : view.surface_links())
+    promise(link.a < link.b && link.b < patches && link.length > 0, "links join patches");
+  for (const BodyLink& link : view.body_links())
+    promise(link.a < link.b && link.b < patches && link.length > 0, "links across join patches");
+  promise(view.material() >= 0 && view.material() <= 1, "the material is one");
+  const auto tables = std::make_unique<PatchTables>();
+  tables->start(view);
+  promise(tables->count == patches, "the tracker takes the network up");
+}
 
 void open_and_walk(Bytes image) {
   ModelView view;
@@ -30,6 +51,7 @@ void open_and_walk(Bytes image) {
     for (const std::int8_t bin : d.bins) promise(bin >= 0, "descriptors are not negative");
   for (const LocalFrame& f : view.frames()) sum += f.axes[8];
   promise(sum - sum == 0, "positions are finite");
+  walk_network(view);
   promise(!describe_model(view).empty(), "a model can be described");
 }
 

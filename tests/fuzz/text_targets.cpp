@@ -43,7 +43,7 @@ void fuzz_config(Bytes data) {
     return;
   }
   promise(config.track.max_regions >= 1 && config.track.max_regions <= 8, "ranges are kept");
-  promise(std::isfinite(config.track.budget_ms) && std::isfinite(config.track.material),
+  promise(std::isfinite(config.track.budget_ms) && std::isfinite(config.track.material.value_or(0)),
           "numbers are finite");
   promise(config.view.port >= 0 && config.view.port <= 65535, "the port is one");
   promise(!describe_config(config).empty(), "a config can be described");

@@ -97,12 +97,28 @@ TEST(ModelDamage, CountsOverTheLimitsWithTheRightChecksum) {
   EXPECT_EQ(with_header([](ModelHeader& h) { h.keypoint_count = limits::kMaxModelKeypoints; }),
             ModelFault::corrupt);
   EXPECT_EQ(with_header([](ModelHeader& h) { h.point_count = 0; }), ModelFault::corrupt);
+
+  const std::pair<std::uint32_t ModelHeader::*, std::size_t> network[] = {
+      {&ModelHeader::patch_count, limits::kMaxPatches},
+      {&ModelHeader::surface_link_count, limits::kMaxBorders},
+      {&ModelHeader::body_link_count, limits::kMaxBodyLinks}};
+  for (const auto& [count, most] : network) {
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.*count = static_cast<std::uint32_t>(most) + 1; }),
+              ModelFault::over_limit);
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.*count = 0xFFFFFFFF; }), ModelFault::over_limit);
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.*count = static_cast<std::uint32_t>(most); }),
+              ModelFault::corrupt);
+  }
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.patch_count = 0; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([](ModelHeader& h) { --h.patch_count; }), ModelFault::corrupt);
 }
 
 TEST(ModelDamage, OffsetsThatLeadElsewhere) {
   for (const auto offset :
        {&ModelHeader::positions_offset, &ModelHeader::normals_offset, &ModelHeader::neighbours_offset,
-        &ModelHeader::descriptors_offset, &ModelHeader::frames_offset})
+        &ModelHeader::descriptors_offset, &ModelHeader::frames_offset, &ModelHeader::patch_of_offset,
+        &ModelHeader::blends_offset, &ModelHeader::patches_offset, &ModelHeader::surface_links_offset,
+        &ModelHeader::body_links_offset})
     for (const std::uint64_t wrong : std::initializer_list<std::uint64_t>{
              0, 64, 257, good_image().size() - 64, good_image().size(), good_image().size() + 64,
              std::uint64_t{1} << 63, std::numeric_limits<std::uint64_t>::max() - 63})
@@ -112,13 +128,16 @@ TEST(ModelDamage, OffsetsThatLeadElsewhere) {
 TEST(ModelDamage, NumbersThatMakeNoSense) {
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinite = std::numeric_limits<double>::infinity();
-  for (const auto member : {&ModelHeader::spacing, &ModelHeader::support_radius, &ModelHeader::radius})
+  for (const auto member : {&ModelHeader::spacing, &ModelHeader::support_radius, &ModelHeader::radius,
+                            &ModelHeader::patch_radius})
     for (const double wrong : {nan, infinite, -infinite, 0.0, -1.0})
       EXPECT_EQ(with_header([&](ModelHeader& h) { h.*member = wrong; }), ModelFault::corrupt);
   EXPECT_EQ(with_header([&](ModelHeader& h) { h.centre[1] = nan; }), ModelFault::corrupt);
   EXPECT_EQ(with_header([&](ModelHeader& h) { h.lowest[2] = h.highest[2] + 1; }), ModelFault::corrupt);
   EXPECT_EQ(with_header([&](ModelHeader& h) { h.characterisability = 2; }), ModelFault::corrupt);
   EXPECT_EQ(with_header([&](ModelHeader& h) { h.ambiguity = 77; }), ModelFault::corrupt);
+  for (const double wrong : {nan, infinite, -0.01, 1.01})
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.material = wrong; }), ModelFault::corrupt);
 
   for (const float wrong :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 100.0F})
@@ -137,6 +156,83 @@ TEST(ModelDamage, NumbersThatMakeNoSense) {
             ModelFault::corrupt);
   EXPECT_EQ(with_item<LocalFrame>(&ModelHeader::frames_offset, [](LocalFrame& f) { f.axes[8] = 32767; }),
             ModelFault::corrupt);
+}
+
+TEST(ModelDamage, PatchesThatAreNotThereOrOtherThanTheySay) {
+  const auto count = [] {
+    ModelView view;
+    EXPECT_EQ(ModelView::open(good_image(), view), ModelFault::none);
+    return static_cast<std::uint8_t>(view.patches().size());
+  }();
+  EXPECT_EQ(with_item<std::uint8_t>(&ModelHeader::patch_of_offset, [&](std::uint8_t& p) { p = count; }),
+            ModelFault::corrupt);
+  EXPECT_EQ(with_item<std::uint8_t>(&ModelHeader::patch_of_offset, [](std::uint8_t& p) { ++p; }),
+            ModelFault::corrupt)
+      << "the patches' sizes do not fit it";
+
+  const auto patch = [](const std::function<void(ModelPatch&)>& change) {
+    return with_item<ModelPatch>(&ModelHeader::patches_offset, change);
+  };
+  EXPECT_EQ(patch([](ModelPatch& p) { p.points = 0; }), ModelFault::corrupt);
+  EXPECT_EQ(patch([](ModelPatch& p) { ++p.points; }), ModelFault::corrupt);
+  for (const double wrong :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, 100.0})
+    EXPECT_EQ(patch([&](ModelPatch& p) { p.centre[2] = wrong; }), ModelFault::corrupt) << wrong;
+
+  const auto blend = [](const std::function<void(PointBlend&)>& change) {
+    return with_item<PointBlend>(&ModelHeader::blends_offset, change);
+  };
+  for (std::size_t j = 0; j < 4; ++j)
+    EXPECT_EQ(blend([&](PointBlend& b) { b.patch[j] = count; }), ModelFault::corrupt) << j;
+  EXPECT_EQ(blend([](PointBlend& b) { ++b.weight[0]; }), ModelFault::corrupt);
+  EXPECT_EQ(blend([](PointBlend& b) { b.weight = {0, 0, 0, 0}; }), ModelFault::corrupt);
+  EXPECT_EQ(blend([](PointBlend& b) { b.weight = {0, 128, 0, 0}; }), ModelFault::corrupt);
+  EXPECT_EQ(blend([](PointBlend& b) { b.weight = {255, 129, 0, 0}; }), ModelFault::corrupt);
+  EXPECT_EQ(blend([](PointBlend& b) { b.weight = {128, 0, 0, 0}; }), ModelFault::none);
+}
+
+template <typename Link>
+void expect_damage_is_told(std::uint64_t ModelHeader::*offset, std::uint32_t ModelHeader::*count) {
+  const auto damaged = [&](const std::function<void(Link&)>& change) {
+    return with_item<Link>(offset, change);
+  };
+  ASSERT_EQ(damaged([](Link&) {}), ModelFault::none);
+  EXPECT_EQ(damaged([](Link& l) { std::swap(l.a, l.b); }), ModelFault::corrupt);
+  EXPECT_EQ(damaged([](Link& l) { l.a = l.b; }), ModelFault::corrupt);
+  EXPECT_EQ(damaged([](Link& l) { l.b = 255; }), ModelFault::corrupt);
+  EXPECT_EQ(damaged([](Link& l) { l.a = 1, l.b = 200; }), ModelFault::corrupt) << "not in order";
+  for (const double wrong :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 0.0, -0.01, 100.0})
+    EXPECT_EQ(damaged([&](Link& l) { l.length = wrong; }), ModelFault::corrupt) << wrong;
+  // Twice the same.
+  Image image = good_image();
+  ModelHeader header;
+  std::memcpy(&header, image.data(), sizeof header);
+  ASSERT_GE(header.*count, 2U);
+  std::memcpy(image.data() + header.*offset + sizeof(Link), image.data() + header.*offset, sizeof(Link));
+  seal_model_image(image);
+  EXPECT_EQ(fault_of(image), ModelFault::corrupt);
+}
+
+TEST(ModelDamage, LinksThatHoldNothingTogether) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect_damage_is_told<SurfaceLink>(&ModelHeader::surface_links_offset, &ModelHeader::surface_link_count);
+  const auto along = [](const std::function<void(SurfaceLink&)>& change) {
+    return with_item<SurfaceLink>(&ModelHeader::surface_links_offset, change);
+  };
+  EXPECT_EQ(along([](SurfaceLink& l) { l.edges = 0; }), ModelFault::corrupt);
+  EXPECT_EQ(along([](SurfaceLink& l) { l.edges = 0xFFFFFFFF; }), ModelFault::corrupt);
+  EXPECT_EQ(along([&](SurfaceLink& l) { l.centre[0] = nan; }), ModelFault::corrupt);
+  EXPECT_EQ(along([](SurfaceLink& l) { l.centre[1] = -100; }), ModelFault::corrupt);
+
+  expect_damage_is_told<BodyLink>(&ModelHeader::body_links_offset, &ModelHeader::body_link_count);
+  const auto across = [](const std::function<void(BodyLink&)>& change) {
+    return with_item<BodyLink>(&ModelHeader::body_links_offset, change);
+  };
+  EXPECT_EQ(across([](BodyLink& l) { l.looks = 0; }), ModelFault::corrupt);
+  EXPECT_EQ(across([](BodyLink& l) { l.looks = 0xFFFFFFFF; }), ModelFault::corrupt);
+  EXPECT_EQ(across([&](BodyLink& l) { l.middle[0] = nan; }), ModelFault::corrupt);
+  EXPECT_EQ(across([](BodyLink& l) { l.middle[2] = 100; }), ModelFault::corrupt);
 }
 
 TEST(ModelDamage, EveryFaultHasItsLine) {

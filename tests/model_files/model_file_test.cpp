@@ -66,6 +66,13 @@ TEST(DescribeModel, NamesWhatIsInIt) {
   EXPECT_TRUE(mentions(text, "points: " + std::to_string(made.view().size()) + "\n"));
   EXPECT_TRUE(mentions(text, "extent: 100.0 x 100.0 x 200.0 mm\n"));
   EXPECT_TRUE(mentions(text, "surface: closed\n"));
+  EXPECT_TRUE(mentions(text, "patches: " + std::to_string(made.view().patches().size()) + ", "));
+  EXPECT_TRUE(mentions(
+      text, "links along the surface: " + std::to_string(made.view().surface_links().size()) + ", "));
+  EXPECT_TRUE(
+      mentions(text, "links across the body: " + std::to_string(made.view().body_links().size()) + ", "));
+  EXPECT_TRUE(mentions(text, "material: 0.5 "));
+  EXPECT_TRUE(mentions(describe_model(make(shapes::plane(0.2, 0.1, 60)).view()), "across the body: none\n"));
 }
 
 }  // namespace
