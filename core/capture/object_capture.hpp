@@ -16,6 +16,7 @@
 #include "core/capture/keyframes.hpp"
 #include "core/capture/object_cells.hpp"
 #include "core/capture/pose_trail.hpp"
+#include "core/capture/standstill.hpp"
 
 namespace pliant {
 
@@ -34,12 +35,15 @@ struct CaptureStatus {
   bool too_fast = false;     ///< the object moved farther than alignment reaches, or nearly
   bool too_large = false;    ///< the object reaches out of the volume
   bool featureless = false;  ///< its shape does not hold the view: a ball, a plate
-  bool against = false;      ///< something that moves against the object is left out
-  double distance = 0;       ///< of the object, metres; 0 while waiting
-  double agreement = 0;      ///< share of the judged readings that fit [0, 1]
-  double rms = 0;            ///< of their distances from the fused surface, metres
-  double held = 0;           ///< see ViewFit::held
-  RigidTransform pose;       ///< camera <- model, while capturing
+  /// Share of the views fused last in which the object stood in the same pixels: featureless may then only
+  /// mean that it has not moved yet.
+  double standing = 0;
+  bool against = false;  ///< something that moves against the object is left out
+  double distance = 0;   ///< of the object, metres; 0 while waiting
+  double agreement = 0;  ///< share of the judged readings that fit [0, 1]
+  double rms = 0;        ///< of their distances from the fused surface, metres
+  double held = 0;       ///< see ViewFit::held
+  RigidTransform pose;   ///< camera <- model, while capturing
 };
 
 /// All that happened so far.
@@ -99,6 +103,8 @@ class ObjectCapture {
   void fuse(const DepthFrame& frame) noexcept;
   void keep(const DepthFrame& frame) noexcept;
   [[nodiscard]] ViewAlignSettings align_settings() const noexcept;
+  /// Does the shape tell how the view lies, as `fit` has it for `points`?
+  void judge_hold(const ViewFit& fit, std::span<const ViewPoint> points) noexcept;
 
   Intrinsics camera_;
   CaptureSettings settings_;
@@ -123,6 +129,7 @@ class ObjectCapture {
   bool all_known_ = false;           // every pose so far was given exactly
   RigidTransform world_from_model_;  // of exact poses
   PoseTrail trail_;                  // of the fused pictures
+  Standstill standstill_;
   double table_height_ = 0;
   CaptureStatus status_;
   CaptureFigures figures_;

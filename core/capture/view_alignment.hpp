@@ -22,7 +22,7 @@ struct ViewFit {
   /// Of all small motions of the view, the least share of a motion that the surface shows (compare
   /// drivers' characterisability): next to nothing for a ball or a plate.
   double held = 0;
-  double needed = 0;  ///< least `held` at which the sensor notices a slip by a tenth of the object's radius
+  double radius = 0;  ///< of the known surface that is seen, root mean square, metres
 
   /// Of the points that can be judged, the share that agrees.
   [[nodiscard]] double agreement() const noexcept {

@@ -25,7 +25,8 @@ class CaptureGuide {
   /// How far it is: renewed with every picture.
   [[nodiscard]] std::string line() const;
   /// Advice that should be read now; empty for most pictures. No sooner than two seconds after the same
-  /// advice was given, and only after a quarter of a second of good reason.
+  /// advice was given, and only after a quarter of a second of good reason; after two where it may be that
+  /// the object has not been turned yet.
   [[nodiscard]] std::string advice();
   /// Everything from the first view all round to it again was seen.
   [[nodiscard]] bool round_closed() const { return sectors_ == Coverage::kSectors; }
@@ -40,11 +41,14 @@ class CaptureGuide {
     too_fast,
     too_large,
     featureless,
+    unmoved,
     against,
     closed
   };
   [[nodiscard]] Advice wanted(const CaptureStatus& status) const;
   [[nodiscard]] static const char* words(Advice advice);
+  /// Pictures of good reason before it is given.
+  [[nodiscard]] double patience(Advice advice) const;
 
   double rate_;
   CaptureStatus status_;
@@ -53,7 +57,7 @@ class CaptureGuide {
   std::string missing_;
   Advice reason_ = Advice::none;
   int pictures_with_reason_ = 0;
-  std::vector<std::int64_t> told_ = std::vector<std::int64_t>(10, -1000000);  // at which picture
+  std::vector<std::int64_t> told_ = std::vector<std::int64_t>(11, -1000000);  // at which picture
   std::int64_t pictures_ = 0;
 };
 
