@@ -147,6 +147,9 @@ void ObjectCapture::judge_hold(const ViewFit& fit, std::span<const ViewPoint> po
   status_.standing = noise.standing;
   status_.featureless = fit.held < needed_share(noise, fit.radius, fit.agreeing);
   figures_.featureless += status_.featureless ? 1 : 0;
+  was_held_ = was_held_ || !status_.featureless;
+  unheld_ = status_.featureless ? unheld_ + 1 : 0;
+  if (was_held_) figures_.longest_unheld = std::max(figures_.longest_unheld, unheld_);
 }
 
 bool ObjectCapture::follow(const GivenPose& given) noexcept {

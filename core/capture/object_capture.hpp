@@ -49,6 +49,8 @@ struct CaptureStatus {
 /// All that happened so far.
 struct CaptureFigures {
   std::int64_t frames = 0, fused = 0, lost = 0, featureless = 0;
+  /// The most pictures on end that were featureless after one that was not: the handle went out of sight.
+  std::int64_t longest_unheld = 0;
 };
 
 /// Memory is the block given to start(); no heap call afterwards. Model frame: origin in the middle of the
@@ -130,6 +132,8 @@ class ObjectCapture {
   RigidTransform world_from_model_;  // of exact poses
   PoseTrail trail_;                  // of the fused pictures
   Standstill standstill_;
+  bool was_held_ = false;    // the shape has told once how the view lies
+  std::int64_t unheld_ = 0;  // featureless pictures since
   double table_height_ = 0;
   CaptureStatus status_;
   CaptureFigures figures_;

@@ -25,7 +25,14 @@ std::string sides_missing(const Coverage& coverage) {
 }
 
 std::string doubt_of_turning(const CaptureFigures& figures, const Coverage& coverage) {
-  if (2 * figures.featureless <= figures.fused) return "";
+  if (2 * figures.featureless <= figures.fused) {
+    if (figures.longest_unheld < kUnheldStretch) return "";
+    return fmt::format(
+        "its turning could not be seen for {} pictures on end: what came before and after may lie turned "
+        "against each other. Compare the surface (--ply) with the object, or keep in sight what stands out "
+        "of it",
+        figures.longest_unheld);
+  }
   std::string text = fmt::format(
       "its turning could not be seen: in {} of {} pictures the shape, round about an axis or flat, did not "
       "tell how it was turned. ",
@@ -45,6 +52,7 @@ void CaptureGuide::take(const CaptureStatus& status, const Coverage& coverage) {
   from_above_ = coverage.seen_from_above();
   missing_ = sides_missing(coverage);
   ++pictures_;
+  held_ += status.state == CaptureState::capturing && !status.featureless ? 1 : 0;
   const Advice reason = wanted(status);
   pictures_with_reason_ = reason == reason_ ? pictures_with_reason_ + 1 : 1;
   reason_ = reason;
@@ -104,8 +112,10 @@ std::string CaptureGuide::line() const {
 }
 
 double CaptureGuide::patience(Advice advice) const {
-  // What stands out only here and there is known when it has moved by some degrees.
-  return advice == Advice::featureless || advice == Advice::unmoved ? 2 * rate_ : rate_ / 4;
+  if (advice != Advice::featureless && advice != Advice::unmoved) return rate_ / 4;
+  // What stands out only here and there is known when it has moved by some degrees. The first view is not
+  // judged.
+  return held_ > 1 ? rate_ / 2 : 2 * rate_;
 }
 
 std::string CaptureGuide::advice() {

@@ -97,6 +97,16 @@ TEST(CaptureGuide, SaysThatItIsFeaturelessOnlyWhenItWillNotShowByItself) {
   EXPECT_NE(advice(0.1, 70).find("show a side with more shape"), std::string::npos);
 }
 
+TEST(CaptureGuide, SaysSoonThatWhatStoodOutWentOutOfSight) {
+  CaptureGuide guide(30);
+  const Coverage coverage;
+  after(guide, fine(), coverage, 10);
+  CaptureStatus status = fine();
+  status.featureless = true;
+  EXPECT_EQ(after(guide, status, coverage, 10), "");
+  EXPECT_NE(after(guide, status, coverage, 10).find("show a side with more shape"), std::string::npos);
+}
+
 TEST(CaptureGuide, SaysInTheEndWhatAFeaturelessCaptureIsWorth) {
   CaptureFigures figures;
   figures.frames = figures.fused = 300;
@@ -104,6 +114,9 @@ TEST(CaptureGuide, SaysInTheEndWhatAFeaturelessCaptureIsWorth) {
   Coverage front;
   for (int i = 0; i < 3; ++i) front.add(seen_from(0, -0.6, 0.1));
   EXPECT_EQ(doubt_of_turning(figures, front), "");
+  figures.longest_unheld = 40;
+  const std::string gap = doubt_of_turning(figures, seen_from_all_but_the_back());
+  EXPECT_NE(gap.find("for 40 pictures on end"), std::string::npos) << gap;
   figures.featureless = 298;
   const std::string doubt = doubt_of_turning(figures, front);
   EXPECT_NE(doubt.find("in 298 of 300 pictures"), std::string::npos) << doubt;

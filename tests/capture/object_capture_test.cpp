@@ -92,6 +92,14 @@ void expect_held_by_its_lugs(const char* options, double most_featureless) {
   EXPECT_LT(run.score.seam, 0.003);
 }
 
+TEST(ObjectCapture, AHandleThatGoesOutOfSightLeavesItsTurnInDoubt) {
+  CaptureRun run;
+  const Geometry object = bottle(std::array{Lug{-1.4, 0.09, 0.02}, Lug{-0.4, 0.11, 0.02}});
+  EXPECT_LT(featureless_share(object, "?motion=turned&frames=200&width=320&height=240", run), 0.5);
+  EXPECT_GE(run.capture.figures().longest_unheld, kUnheldStretch);
+  EXPECT_NE(doubt_of_turning(run.capture.figures(), run.capture.coverage()), "");
+}
+
 TEST(ObjectCapture, FewLugsAreEnoughForACarriedSensor) {
   expect_held_by_its_lugs("?motion=carried&frames=100&width=320&height=240", 0.3);
 }
