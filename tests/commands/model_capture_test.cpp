@@ -137,6 +137,13 @@ TEST_F(CaptureCommand, PublishesTheModelAsItGrows) {
   EXPECT_EQ((*tracker)->counters().total(), 0);
 }
 
+TEST_F(CaptureCommand, AFolderThatIsMissingIsToldBeforeAnythingIsTurned) {
+  expect_refused(run_pliant(words(kTurned, at("none/box.model"))), 3, {"none/box.model", "make it first"});
+  std::vector<std::string> command = words(kTurned, at("box.model"));
+  command.insert(command.end(), {"--ply", at("none/box.ply")});
+  expect_refused(run_pliant(command), 3, {"none/box.ply", "make it first"});
+}
+
 TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
   const Ended ended = run_pliant(words("simulated:box?frames=8&width=320&height=240", "/dev/full"));
   EXPECT_EQ(ended.code, 3);
