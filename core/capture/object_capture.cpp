@@ -162,6 +162,7 @@ bool ObjectCapture::follow(const GivenPose& given) noexcept {
       std::span<const ViewPoint>(points_).first(cells_.sample(surface_, normal_span_, points_));
   ViewAlignSettings align = align_settings();
   if (known) align.iterations = 0;
+  align.stands = !known && standstill_.share(points, predicted) > 0.5;
   ViewFit fit = align_to_volume(points, volume_, predicted, align, rows_);
   if (tried &&
       !(surely_fits(fit) && stands_before(keyframes_.all(), fit.pose, background_.planes(), align.noise)))

@@ -118,7 +118,7 @@ ViewFit align_to_volume(std::span<const ViewPoint> points, const DistanceVolume&
           kResidualMetres;
     if (counts.rows == 0) break;
     const double radius = radius_of(used, robust.centre);
-    const WeakMotions weak = weigh_weak_motions(used, robust, radius);
+    const WeakMotions weak = weigh_weak_motions(used, robust, radius, settings.stands);
     Vector6 x;
     if (i < settings.iterations && step(robust, weak.equations, predicted, settings, inverse, x) &&
         !is_still(x))

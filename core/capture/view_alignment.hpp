@@ -37,6 +37,7 @@ struct ViewAlignSettings {
       0.03;  ///< how far the view turns off its prediction, one standard deviation, radians
   double prior_translation = 0.006;  ///< and moves, metres
   std::int32_t noise = 24;           ///< σ of the readings, 1/16 mm
+  bool stands = false;               ///< mostly in the pixels it was fused from, which err as they did then
 };
 
 /// Distance-to-surface alignment (Canelhas, Stoyanov, Lilienthal: SDF Tracker, IROS 2013; Bylow et al.:

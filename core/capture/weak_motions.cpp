@@ -21,7 +21,8 @@ struct Told {
   double confirmed = 0;  // of the information, what the view's own normals tell too
 };
 
-Told told_of(const Vector6& motion, std::span<const PlaneRow> rows, const RobustMoments& robust) noexcept {
+Told told_of(const Vector6& motion, std::span<const PlaneRow> rows, const RobustMoments& robust,
+             bool stands) noexcept {
   const Vector3 turn = motion.head<3>(), shift = motion.tail<3>();
   Told told;
   for (const PlaneRow& row : rows) {
@@ -34,7 +35,7 @@ Told told_of(const Vector6& motion, std::span<const PlaneRow> rows, const Robust
     const double along = (way.x() * row.nx + way.y() * row.ny + way.z() * row.nz) / 16384.0;
     const double own = (way.x() * row.vx + way.y() * row.vy + way.z() * row.vz) / 16384.0;
     const double limit = kTelling * kTelling * way.squaredNorm();
-    const double both = along * own <= 0 ? 0 : std::min(along * along, own * own);
+    const double both = !stands ? along * along : along * own <= 0 ? 0 : std::min(along * along, own * own);
     const double leaning = both < limit ? both / limit : 1.0;
     const double weighed = weight / 256.0 * leaning * leaning * along;
     told.information += weighed * along;
@@ -46,8 +47,8 @@ Told told_of(const Vector6& motion, std::span<const PlaneRow> rows, const Robust
 
 }  // namespace
 
-WeakMotions weigh_weak_motions(std::span<const PlaneRow> rows, const RobustMoments& robust,
-                               double radius) noexcept {
+WeakMotions weigh_weak_motions(std::span<const PlaneRow> rows, const RobustMoments& robust, double radius,
+                               bool stands) noexcept {
   WeakMotions weak;
   weak.equations = plane_equations(robust.moments);
   if (robust.moments.weight == 0) return weak;
@@ -65,7 +66,7 @@ WeakMotions weigh_weak_motions(std::span<const PlaneRow> rows, const RobustMomen
     if (share < kWeak) {
       // Motions of the matrix's own are independent of each other: one is exchanged alone.
       const Vector6 v = motions.vectors.col(k);
-      const Told told = told_of(unit.cwiseProduct(v), rows, robust);
+      const Told told = told_of(unit.cwiseProduct(v), rows, robust, stands);
       weighed += (told.information - motions.values[k]) * v * v.transpose();
       b += (told.moved - v.dot(b)) * v;
       share = std::sqrt(std::max(0.0, told.confirmed) / weight);

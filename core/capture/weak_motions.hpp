@@ -15,8 +15,9 @@ namespace pliant {
 /// errors of the sensor as before, and these hold it where it was, with a hundred times as many rows. They
 /// lean against the motion by some degrees only; so rows weigh by the fourth power of how much they lean, up
 /// to 25° (geometric stability: Gelfand et al.: Geometrically stable sampling for the ICP algorithm, 3DIM
-/// 2003). A row leans as little as the one of the known surface and the view that leans less, and not at all
-/// when they lean to opposite sides: what flickers, or was fused from other pixels, is no lug.
+/// 2003). While the object `stands` in the pixels it was fused from, a row leans only as much as both the
+/// known surface and the view's own normal do, and not at all when they lean to opposite sides: what flickers
+/// is no lug.
 struct WeakMotions {
   PlaneEquations equations;
   /// Of all small motions, the least share of a motion that telling rows see along their normals, the known
@@ -25,7 +26,7 @@ struct WeakMotions {
   double held = 0;
 };
 [[nodiscard]] WeakMotions weigh_weak_motions(std::span<const PlaneRow> rows, const RobustMoments& robust,
-                                             double radius) noexcept;
+                                             double radius, bool stands) noexcept;
 
 /// What the readings of a view are worth against a slip.
 struct SlipNoise {
