@@ -4,6 +4,7 @@
 
 #include "core/capture/first_view.hpp"
 #include "core/capture/view_search.hpp"
+#include "core/capture/weak_motions.hpp"
 
 namespace pliant {
 
@@ -12,6 +13,8 @@ namespace {
 constexpr double kNormalSpan = 0.006;    // metres to each side that normals are taken over
 constexpr double kTooFarVoxels = 1.5;    // σ beyond so many voxels says nothing of the surface
 constexpr double kLeastReadings = 0.15;  // of the picture
+// Of kSensorFocal's pixels so many say as much as one: the integral of their errors' correlation.
+constexpr double kAlikePixels = 35;
 
 bool usable_size(double size) noexcept {
   return size >= 0.05 && size <= 1.0;
@@ -133,6 +136,22 @@ ViewAlignSettings ObjectCapture::align_settings() const noexcept {
   return align;
 }
 
+void ObjectCapture::judge_hold(const ViewFit& fit, std::span<const ViewPoint> points) noexcept {
+  SlipNoise noise;
+  noise.sigma = align_settings().noise / kUnitsPerMetre;
+  noise.standing = standstill_.share(points, fit.pose);
+  const double pixels_of_a_row =
+      static_cast<double>(4 * cells_.taken()) / static_cast<double>(std::max<std::size_t>(1, points.size()));
+  const double thinned = camera_.fx * camera_.fy / (kSensorFocal * kSensorFocal);
+  noise.alike = std::max(1.0, kAlikePixels * thinned / pixels_of_a_row);
+  status_.standing = noise.standing;
+  status_.featureless = fit.held < needed_share(noise, fit.radius, fit.agreeing);
+  figures_.featureless += status_.featureless ? 1 : 0;
+  was_held_ = was_held_ || !status_.featureless;
+  unheld_ = status_.featureless ? unheld_ + 1 : 0;
+  if (was_held_) figures_.longest_unheld = std::max(figures_.longest_unheld, unheld_);
+}
+
 bool ObjectCapture::follow(const GivenPose& given) noexcept {
   const bool known = given.kind == GivenPose::Kind::exact, tried = given.kind == GivenPose::Kind::near;
   const RigidTransform predicted = known   ? given.pose * world_from_model_
@@ -143,6 +162,7 @@ bool ObjectCapture::follow(const GivenPose& given) noexcept {
       std::span<const ViewPoint>(points_).first(cells_.sample(surface_, normal_span_, points_));
   ViewAlignSettings align = align_settings();
   if (known) align.iterations = 0;
+  align.stands = !known && standstill_.share(points, predicted) > 0.5;
   ViewFit fit = align_to_volume(points, volume_, predicted, align, rows_);
   if (tried &&
       !(surely_fits(fit) && stands_before(keyframes_.all(), fit.pose, background_.planes(), align.noise)))
@@ -156,8 +176,7 @@ bool ObjectCapture::follow(const GivenPose& given) noexcept {
   status_.agreement = fit.agreement();
   status_.rms = fit.rms;
   status_.held = fit.held;
-  status_.featureless = fit.held < fit.needed;
-  figures_.featureless += status_.featureless ? 1 : 0;
+  if (!known) judge_hold(fit, points);
   trail_.add(known ? predicted : fit.pose, status_.frame);
   // What moves nearly as far as the distances reach may get lost with the next picture.
   if (!settings_.separate_views && trail_.moved(0.25 * settings_.size) > plan_.front / kUnitsPerMetre)
@@ -190,6 +209,7 @@ void ObjectCapture::fuse(const DepthFrame& frame) noexcept {
   picture_.facing = picture_facing_;
   take_picture(surface_, cells_.mask(), normal_span_, picture_);
   fuser_.fuse({picture_, pose, !settings_.separate_views}, surface_, volume_);
+  standstill_.add(pose);
   ++figures_.fused;
   coverage_.add(pose, settings_.separate_views ? Coverage::kEnoughViews : 1);
   if (settings_.separate_views || keyframes_.wanted(pose)) keep(frame);

@@ -16,6 +16,7 @@
 #include "core/capture/keyframes.hpp"
 #include "core/capture/object_cells.hpp"
 #include "core/capture/pose_trail.hpp"
+#include "core/capture/standstill.hpp"
 
 namespace pliant {
 
@@ -34,17 +35,22 @@ struct CaptureStatus {
   bool too_fast = false;     ///< the object moved farther than alignment reaches, or nearly
   bool too_large = false;    ///< the object reaches out of the volume
   bool featureless = false;  ///< its shape does not hold the view: a ball, a plate
-  bool against = false;      ///< something that moves against the object is left out
-  double distance = 0;       ///< of the object, metres; 0 while waiting
-  double agreement = 0;      ///< share of the judged readings that fit [0, 1]
-  double rms = 0;            ///< of their distances from the fused surface, metres
-  double held = 0;           ///< see ViewFit::held
-  RigidTransform pose;       ///< camera <- model, while capturing
+  /// Share of the views fused last in which the object stood in the same pixels: featureless may then only
+  /// mean that it has not moved yet.
+  double standing = 0;
+  bool against = false;  ///< something that moves against the object is left out
+  double distance = 0;   ///< of the object, metres; 0 while waiting
+  double agreement = 0;  ///< share of the judged readings that fit [0, 1]
+  double rms = 0;        ///< of their distances from the fused surface, metres
+  double held = 0;       ///< see ViewFit::held
+  RigidTransform pose;   ///< camera <- model, while capturing
 };
 
 /// All that happened so far.
 struct CaptureFigures {
   std::int64_t frames = 0, fused = 0, lost = 0, featureless = 0;
+  /// The most pictures on end that were featureless after one that was not: the handle went out of sight.
+  std::int64_t longest_unheld = 0;
 };
 
 /// Memory is the block given to start(); no heap call afterwards. Model frame: origin in the middle of the
@@ -99,6 +105,8 @@ class ObjectCapture {
   void fuse(const DepthFrame& frame) noexcept;
   void keep(const DepthFrame& frame) noexcept;
   [[nodiscard]] ViewAlignSettings align_settings() const noexcept;
+  /// Does the shape tell how the view lies, as `fit` has it for `points`?
+  void judge_hold(const ViewFit& fit, std::span<const ViewPoint> points) noexcept;
 
   Intrinsics camera_;
   CaptureSettings settings_;
@@ -123,6 +131,9 @@ class ObjectCapture {
   bool all_known_ = false;           // every pose so far was given exactly
   RigidTransform world_from_model_;  // of exact poses
   PoseTrail trail_;                  // of the fused pictures
+  Standstill standstill_;
+  bool was_held_ = false;    // the shape has told once how the view lies
+  std::int64_t unheld_ = 0;  // featureless pictures since
   double table_height_ = 0;
   CaptureStatus status_;
   CaptureFigures figures_;

@@ -237,10 +237,15 @@ Window ObjectCells::window() const noexcept {
   return w;
 }
 
-std::size_t ObjectCells::sample(const Surface& surface, std::int32_t normal_span,
-                                std::span<ViewPoint> out) const noexcept {
+std::size_t ObjectCells::taken() const noexcept {
   std::size_t all = 0;
   for (const std::uint8_t taken : taken_) all += taken;
+  return all;
+}
+
+std::size_t ObjectCells::sample(const Surface& surface, std::int32_t normal_span,
+                                std::span<ViewPoint> out) const noexcept {
+  const std::size_t all = taken();
   if (all == 0) return 0;
   // As many as there is room for, spread evenly in the order of rows.
   std::size_t count = 0, seen = 0;

@@ -55,6 +55,8 @@ class ObjectCells {
   [[nodiscard]] std::uint32_t count(Cell kind) const noexcept {
     return counts_[static_cast<std::size_t>(kind)];
   }
+  /// How many cells are taken.
+  [[nodiscard]] std::size_t taken() const noexcept;
   /// The window of the taken cells, pixels.
   [[nodiscard]] Window window() const noexcept;
   /// Taken cells' readings with their normals, evenly thinned out to at most out.size().

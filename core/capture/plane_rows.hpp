@@ -12,6 +12,7 @@ namespace pliant {
 struct PlaneRow {
   IntPoint point;           ///< model frame, 1/16 mm
   std::int16_t nx, ny, nz;  ///< of the plane, unit, model frame, Q14
+  std::int16_t vx, vy, vz;  ///< the view's own normal at the point, likewise
   std::int32_t residual;    ///< distance of the plane from the point along the normal, 1/256 mm
 };
 

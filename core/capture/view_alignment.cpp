@@ -41,12 +41,19 @@ struct Counts {
       ++(volume.stands_in_free_space({p.x, p.y, p.z}, model_from_camera) ? counts.against : counts.fresh);
       continue;
     }
-    if (dot_q14(gradient, model_from_camera.direction(p.nx, p.ny, p.nz)) < kCos60) {
+    const IntPoint own = model_from_camera.direction(p.nx, p.ny, p.nz);
+    if (dot_q14(gradient, own) < kCos60) {
       ++counts.against;
       continue;
     }
-    rows[counts.rows++] = {m, static_cast<std::int16_t>(gradient.x), static_cast<std::int16_t>(gradient.y),
-                           static_cast<std::int16_t>(gradient.z), -distance};
+    rows[counts.rows++] = {m,
+                           static_cast<std::int16_t>(gradient.x),
+                           static_cast<std::int16_t>(gradient.y),
+                           static_cast<std::int16_t>(gradient.z),
+                           static_cast<std::int16_t>(own.x),
+                           static_cast<std::int16_t>(own.y),
+                           static_cast<std::int16_t>(own.z),
+                           -distance};
   }
   return counts;
 }
@@ -111,14 +118,13 @@ ViewFit align_to_volume(std::span<const ViewPoint> points, const DistanceVolume&
           kResidualMetres;
     if (counts.rows == 0) break;
     const double radius = radius_of(used, robust.centre);
-    const WeakMotions weak = weigh_weak_motions(used, robust, radius);
+    const WeakMotions weak = weigh_weak_motions(used, robust, radius, settings.stands);
     Vector6 x;
     if (i < settings.iterations && step(robust, weak.equations, predicted, settings, inverse, x) &&
         !is_still(x))
       continue;
     fit.held = weak.held;
-    // As characterisability has it: the slip moves the surface along its normal by half of the noise.
-    fit.needed = std::clamp(0.5 * settings.noise / kUnitsPerMetre / (0.1 * radius), 0.04, 0.3);
+    fit.radius = radius;
     break;
   }
   fit.pose = inverse.inverse();
@@ -144,8 +150,14 @@ std::size_t pair_rows(std::span<const ViewPoint> points, const RigidTransform& p
     if (std::abs(q.z - p.z) > gate) continue;
     const IntPoint m = to_model.point(point.x, point.y, point.z);
     const IntPoint direction = to_model.direction(point.nx, point.ny, point.nz);
-    rows[count++] = {m, static_cast<std::int16_t>(direction.x), static_cast<std::int16_t>(direction.y),
-                     static_cast<std::int16_t>(direction.z), plane_distance(q, p, n)};
+    rows[count++] = {m,
+                     static_cast<std::int16_t>(direction.x),
+                     static_cast<std::int16_t>(direction.y),
+                     static_cast<std::int16_t>(direction.z),
+                     static_cast<std::int16_t>(direction.x),
+                     static_cast<std::int16_t>(direction.y),
+                     static_cast<std::int16_t>(direction.z),
+                     plane_distance(q, p, n)};
     if (count == rows.size()) break;
   }
   return count;

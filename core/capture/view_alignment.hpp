@@ -22,7 +22,7 @@ struct ViewFit {
   /// Of all small motions of the view, the least share of a motion that the surface shows (compare
   /// drivers' characterisability): next to nothing for a ball or a plate.
   double held = 0;
-  double needed = 0;  ///< least `held` at which the sensor notices a slip by a tenth of the object's radius
+  double radius = 0;  ///< of the known surface that is seen, root mean square, metres
 
   /// Of the points that can be judged, the share that agrees.
   [[nodiscard]] double agreement() const noexcept {
@@ -37,6 +37,7 @@ struct ViewAlignSettings {
       0.03;  ///< how far the view turns off its prediction, one standard deviation, radians
   double prior_translation = 0.006;  ///< and moves, metres
   std::int32_t noise = 24;           ///< σ of the readings, 1/16 mm
+  bool stands = false;               ///< mostly in the pixels it was fused from, which err as they did then
 };
 
 /// Distance-to-surface alignment (Canelhas, Stoyanov, Lilienthal: SDF Tracker, IROS 2013; Bylow et al.:

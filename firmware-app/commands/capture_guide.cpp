@@ -25,16 +25,24 @@ std::string sides_missing(const Coverage& coverage) {
 }
 
 std::string doubt_of_turning(const CaptureFigures& figures, const Coverage& coverage) {
-  if (2 * figures.featureless <= figures.fused) return "";
-  std::string text =
-      fmt::format("in {} of {} pictures the shape did not tell how the object turned: ", figures.featureless,
-                  figures.fused);
+  if (2 * figures.featureless <= figures.fused) {
+    if (figures.longest_unheld < kUnheldStretch) return "";
+    return fmt::format(
+        "its turning could not be seen for {} pictures on end: what came before and after may lie turned "
+        "against each other. Compare the surface (--ply) with the object, or keep in sight what stands out "
+        "of it",
+        figures.longest_unheld);
+  }
+  std::string text = fmt::format(
+      "its turning could not be seen: in {} of {} pictures the shape, round about an axis or flat, did not "
+      "tell how it was turned. ",
+      figures.featureless, figures.fused);
   // Seen from elsewhere, what is round or flat stands in other pixels; turned on the spot, it does not.
   text +=
       coverage.sectors_seen() <= 1
-          ? "one side was seen; if it was turned, that side is smeared. Carry the sensor around it, or put "
-            "something with edges onto it"
-          : "compare the surface (--ply) with the object; its sides may lie turned against each other";
+          ? "The model is of one side; if the object was turned, what little stands out of it is smeared. "
+            "Carry the sensor around it, or put something with edges onto it"
+          : "Compare the surface (--ply) with the object: its sides may lie turned against each other";
   return text;
 }
 
@@ -44,6 +52,7 @@ void CaptureGuide::take(const CaptureStatus& status, const Coverage& coverage) {
   from_above_ = coverage.seen_from_above();
   missing_ = sides_missing(coverage);
   ++pictures_;
+  held_ += status.state == CaptureState::capturing && !status.featureless ? 1 : 0;
   const Advice reason = wanted(status);
   pictures_with_reason_ = reason == reason_ ? pictures_with_reason_ + 1 : 1;
   reason_ = reason;
@@ -55,7 +64,7 @@ CaptureGuide::Advice CaptureGuide::wanted(const CaptureStatus& status) const {
   if (status.too_large) return Advice::too_large;
   if (status.too_far) return Advice::too_far;
   if (status.too_fast) return Advice::too_fast;
-  if (status.featureless) return Advice::featureless;
+  if (status.featureless) return status.standing > 0.5 ? Advice::unmoved : Advice::featureless;
   if (round_closed() && !told_closed_) return Advice::closed;
   return status.against ? Advice::against : Advice::none;
 }
@@ -82,6 +91,10 @@ const char* CaptureGuide::words(Advice advice) {
     case Advice::featureless:
       return "featureless: what is seen is round or flat and does not tell how it turns; show a side with "
              "more shape";
+    case Advice::unmoved:
+      return "featureless as it stands: what is seen is round or flat, and whether it turns cannot be seen; "
+             "carry "
+             "the sensor around it, or put something with edges onto it";
     case Advice::against:
       return "what moves against the object, such as a hand, is left out";
     case Advice::closed:
@@ -98,9 +111,16 @@ std::string CaptureGuide::line() const {
                      missing_.empty() ? "" : ", not " + missing_, from_above_ ? "" : "; never from above");
 }
 
+double CaptureGuide::patience(Advice advice) const {
+  if (advice != Advice::featureless && advice != Advice::unmoved) return rate_ / 4;
+  // What stands out only here and there is known when it has moved by some degrees. The first view is not
+  // judged.
+  return held_ > 1 ? rate_ / 2 : 2 * rate_;
+}
+
 std::string CaptureGuide::advice() {
   const auto now = static_cast<std::size_t>(reason_);
-  if (reason_ == Advice::none || pictures_with_reason_ < rate_ / 4) return "";
+  if (reason_ == Advice::none || pictures_with_reason_ < patience(reason_)) return "";
   const bool repeated = static_cast<double>(pictures_ - told_[now]) < (told_[now] < 0 ? 0 : 5 * rate_);
   if (repeated) return "";
   told_[now] = pictures_;

@@ -12,7 +12,11 @@ namespace pliant {
 /// Names of the sides that were not seen: "the back, the back left". Empty when all were.
 [[nodiscard]] std::string sides_missing(const Coverage& coverage);
 
-/// What a capture in whose pictures the shape mostly did not tell how it turned is worth; empty when it did.
+/// Pictures on end that leave a turn in doubt when their shape does not tell of it: at a turn in ten seconds
+/// the object goes on by more than the distances reach.
+inline constexpr std::int64_t kUnheldStretch = 15;
+/// What a capture is worth in whose pictures the shape did not tell how it turned, mostly or for a stretch of
+/// kUnheldStretch; empty when it did.
 [[nodiscard]] std::string doubt_of_turning(const CaptureFigures& figures, const Coverage& coverage);
 
 /// Turns the pictures' statuses into a line that is renewed and advice that is given when it changes.
@@ -25,7 +29,8 @@ class CaptureGuide {
   /// How far it is: renewed with every picture.
   [[nodiscard]] std::string line() const;
   /// Advice that should be read now; empty for most pictures. No sooner than two seconds after the same
-  /// advice was given, and only after a quarter of a second of good reason.
+  /// advice was given, and only after a quarter of a second of good reason. Featureless: after half a second,
+  /// and after two while it may be that the object has not been turned yet.
   [[nodiscard]] std::string advice();
   /// Everything from the first view all round to it again was seen.
   [[nodiscard]] bool round_closed() const { return sectors_ == Coverage::kSectors; }
@@ -40,20 +45,23 @@ class CaptureGuide {
     too_fast,
     too_large,
     featureless,
+    unmoved,
     against,
     closed
   };
   [[nodiscard]] Advice wanted(const CaptureStatus& status) const;
   [[nodiscard]] static const char* words(Advice advice);
+  /// Pictures of good reason before it is given.
+  [[nodiscard]] double patience(Advice advice) const;
 
   double rate_;
   CaptureStatus status_;
-  int sectors_ = 0;
+  int sectors_ = 0, held_ = 0;  // pictures whose shape told how they lie
   bool from_above_ = false, told_closed_ = false;
   std::string missing_;
   Advice reason_ = Advice::none;
   int pictures_with_reason_ = 0;
-  std::vector<std::int64_t> told_ = std::vector<std::int64_t>(10, -1000000);  // at which picture
+  std::vector<std::int64_t> told_ = std::vector<std::int64_t>(11, -1000000);  // at which picture
   std::int64_t pictures_ = 0;
 };
 

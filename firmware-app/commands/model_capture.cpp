@@ -2,7 +2,9 @@
 // which it is carried; or single views from files do.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "core/capture/object_capture.hpp"
@@ -161,11 +163,22 @@ std::string refused_words(const CaptureOptions& options) {
   return "";
 }
 
+/// A place that cannot be written to shows before the object was turned for half a minute, not after.
+Outcome check_folder(const std::string& file) {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  std::error_code fault;
+  if (folder.empty() || std::filesystem::is_directory(folder, fault)) return success();
+  return Error{ErrorKind::write, fmt::format("{}: cannot be written: there is no folder {}; make it first",
+                                             file, folder.string())};
+}
+
 int capture(const CaptureOptions& given) {
   const StopSignal stop;
   CaptureOptions options = given;
   if (const std::string fault = refused_words(options); !fault.empty())
     return report({ErrorKind::bad_input, fault});
+  for (const std::string& file : {options.output, options.ply})
+    if (const Outcome possible = check_folder(file); !possible) return report(possible.error());
   options.capture.separate_views = !options.views.empty();
   if (options.at.size() == 2) {
     options.capture.at_u = options.at[0];

@@ -75,13 +75,36 @@ TEST(CaptureGuide, SaysWhatIsWrong) {
   };
   EXPECT_NE(advice([](CaptureStatus& s) { s.too_fast = true; }).find("too fast"), std::string::npos);
   EXPECT_NE(advice([](CaptureStatus& s) { s.too_far = true; }).find("too far"), std::string::npos);
-  EXPECT_NE(advice([](CaptureStatus& s) { s.featureless = true; }).find("featureless"), std::string::npos);
   EXPECT_NE(advice([](CaptureStatus& s) { s.too_large = true; }).find("--size"), std::string::npos);
   EXPECT_NE(advice([](CaptureStatus& s) { s.against = true; }).find("left out"), std::string::npos);
   EXPECT_NE(advice([](CaptureStatus& s) { s.state = CaptureState::lost; }).find("lost"), std::string::npos);
   EXPECT_NE(advice([](CaptureStatus& s) { s.state = CaptureState::waiting; }).find("nothing stands"),
             std::string::npos);
   EXPECT_EQ(advice([](CaptureStatus&) {}), "");
+}
+
+TEST(CaptureGuide, SaysThatItIsFeaturelessOnlyWhenItWillNotShowByItself) {
+  const Coverage coverage;
+  const auto advice = [&](double standing, int pictures) {
+    CaptureGuide guide(30);
+    CaptureStatus status = fine();
+    status.featureless = true;
+    status.standing = standing;
+    return after(guide, status, coverage, pictures);
+  };
+  EXPECT_EQ(advice(1, 45), "") << "nobody has turned it yet";
+  EXPECT_NE(advice(1, 70).find("whether it turns cannot be seen; carry the sensor"), std::string::npos);
+  EXPECT_NE(advice(0.1, 70).find("show a side with more shape"), std::string::npos);
+}
+
+TEST(CaptureGuide, SaysSoonThatWhatStoodOutWentOutOfSight) {
+  CaptureGuide guide(30);
+  const Coverage coverage;
+  after(guide, fine(), coverage, 10);
+  CaptureStatus status = fine();
+  status.featureless = true;
+  EXPECT_EQ(after(guide, status, coverage, 10), "");
+  EXPECT_NE(after(guide, status, coverage, 10).find("show a side with more shape"), std::string::npos);
 }
 
 TEST(CaptureGuide, SaysInTheEndWhatAFeaturelessCaptureIsWorth) {
@@ -91,13 +114,16 @@ TEST(CaptureGuide, SaysInTheEndWhatAFeaturelessCaptureIsWorth) {
   Coverage front;
   for (int i = 0; i < 3; ++i) front.add(seen_from(0, -0.6, 0.1));
   EXPECT_EQ(doubt_of_turning(figures, front), "");
+  figures.longest_unheld = 40;
+  const std::string gap = doubt_of_turning(figures, seen_from_all_but_the_back());
+  EXPECT_NE(gap.find("for 40 pictures on end"), std::string::npos) << gap;
   figures.featureless = 298;
   const std::string doubt = doubt_of_turning(figures, front);
   EXPECT_NE(doubt.find("in 298 of 300 pictures"), std::string::npos) << doubt;
   EXPECT_NE(doubt.find("smeared"), std::string::npos) << doubt;
   const std::string round = doubt_of_turning(figures, seen_from_all_but_the_back());
   EXPECT_EQ(round.find("smeared"), std::string::npos) << round;
-  EXPECT_NE(round.find("compare the surface"), std::string::npos) << round;
+  EXPECT_NE(round.find("Compare the surface"), std::string::npos) << round;
 }
 
 TEST(CaptureGuide, DoesNotChatter) {

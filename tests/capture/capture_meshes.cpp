@@ -1,8 +1,8 @@
 // Captures any mesh on a simulated turntable or with a carried sensor, and tells how far the captured surface
-// lies off: capture_meshes MESH|bottle DIAGONAL x|y|z "?motion=carried&frames=300" [CAPTURED.ply [MM]].
-// DIAGONAL: metres that the mesh is scaled to, 0 as it is; the letter: the axis of the file that points
-// upwards. The captured surface is written in the frame of MESH ("" for none). MM: further noise of the
-// readings, millimetres (CaptureRun::extra_noise).
+// lies off: capture_meshes MESH|bottle|plain-bottle|ball DIAGONAL x|y|z "?motion=carried&frames=300"
+// [CAPTURED.ply [MM]]. DIAGONAL: metres that the mesh is scaled to, 0 as it is; the letter: the axis of the
+// file that points upwards. The captured surface is written in the frame of MESH ("" for none). MM: further
+// noise of the readings, millimetres (CaptureRun::extra_noise).
 #include <cstdio>
 #include <cstdlib>
 
@@ -26,8 +26,8 @@ struct Standing {
 /// The file's mesh, scaled, one of its axes upwards.
 Result<Standing> standing_mesh(const std::string& path, double diagonal, int up) {
   Standing standing;
-  if (path == "bottle") {
-    standing.mesh = bottle_with_lugs();
+  if (path == "bottle" || path == "plain-bottle" || path == "ball") {
+    standing.mesh = path == "ball" ? ball() : path == "bottle" ? bottle_with_lugs() : plain_bottle();
     return standing;
   }
   const Result<Geometry> file = read_geometry(path);
@@ -101,7 +101,8 @@ int capture_mesh(const std::string& path, double diagonal, int up, const std::st
 int main(int count, char** words) {
   if (count < 5 || count > 7) {
     std::fputs(
-        "usage: capture_meshes MESH|bottle DIAGONAL x|y|z ?motion=turned&frames=300 [CAPTURED.ply [MM]]\n",
+        "usage: capture_meshes MESH|bottle|plain-bottle|ball DIAGONAL x|y|z ?motion=turned&frames=300 "
+        "[CAPTURED.ply [MM]]\n",
         stderr);
     return 2;
   }

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""score_tracking.py PLIANT CAPTURE_MESHES FOLDER OBJECT...: tracks deforming objects, once with the model of the true mesh,
+"""score_tracking.py [--draws] PLIANT CAPTURE_MESHES FOLDER OBJECT...: tracks deforming objects, once with the model of the true mesh,
 once with the same surface's points chosen anew, and once with a captured model, and prints the errors side by side.
 
 OBJECT: cushion, figure or box of the simulated sensor, as OBJECT@SEED with another seed of its noise, or the folder of a
 recording with model.ply (y upwards) and truth.npz. Captures are of a camera that goes round the object, at heights of 20 to
-50 degrees. Only points count that the captured model has, within 3 mm: what no view showed is no error of what was
+50 degrees. With --draws, the true and the captured surface are each sampled at six spacings more, and the geometric means
+are printed: which points happen to be chosen decides much. Only points count that the captured model has, within 3 mm: what no view showed is no error of what was
 captured. FOLDER keeps what was made and is gone on from. Needs numpy, scipy and ../shared/evaluate."""
 import os
 import subprocess
@@ -20,6 +21,7 @@ import evaluate
 FRAMES = "200"
 CAPTURE = "?motion=circled&frames=300"
 SIGMAS = 0.0051  # metres: four deviations of a reading at 0.6 m, as a captured model is spaced
+DRAWS = (0.003, 0.0035, 0.004, 0.0045, 0.0051, 0.006)
 NEAR = 0.003     # metres
 
 
@@ -90,14 +92,35 @@ def errors(truth, points_dir, had):
     return len(files), {name: np.concatenate(e) if e else np.zeros(0) for name, e in found.items()}
 
 
+def tracked(pliant, sequence, truth, had, at, surface, model, spacing):
+    """Frames tracked, and errors()."""
+    run(pliant, "model", "build", at(surface + ".ply"), "-o", at(model + ".model"),
+        *(["--spacing", str(spacing)] if spacing else []))
+    points = at(model + ".points")
+    subprocess.run(["rm", "-rf", points], check=True)
+    subprocess.run([pliant, "run", "--model", at(model + ".model"), "--source", "recording:" + sequence, "--lcm-url", "none",
+                    "--pace", "fast", "--points", points], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                   check=False)  # not tracked in the last frame: told by the table
+    return errors(truth, points, had)
+
+
+def millimetres(e):
+    return [np.median(e) * 1e3, np.percentile(e, 95) * 1e3] if len(e) else [np.nan, np.nan]
+
+
+def print_row(name, model, count, cells):
+    print("| %s | %s | %s | %s |" % (name, model, count, " | ".join("%.2f / %.2f mm" % tuple(c) for c in cells)), flush=True)
+
+
 def main():
-    if len(sys.argv) < 5:
+    words = [w for w in sys.argv[1:] if w != "--draws"]
+    if len(words) < 4:
         sys.exit(__doc__)
-    pliant, capture, folder = sys.argv[1:4]
+    pliant, capture, folder = words[:3]
     os.makedirs(folder, exist_ok=True)
     print("| object | model | tracked | points, median / p95 | on rigid ones | on deformed ones |\n|---|---|---|---|---|---|")
     pooled = {}
-    for thing in sys.argv[4:]:
+    for thing in words[3:]:
         sequence, up = sequence_of(pliant, thing, folder)
         name = os.path.basename(os.path.normpath(thing))
         at = lambda what: os.path.join(folder, name + "." + what)
@@ -107,20 +130,15 @@ def main():
         write_ply(at("true.ply"), truth.model, truth.triangles)
         captured = evaluate.xyz(evaluate.read_ply(at("captured.ply"))[0])
         had = cKDTree(captured).query(truth.model)[0] < NEAR
-        for model, spacing in (("true", None), ("anew", None), ("captured", str(SIGMAS))):
-            run(pliant, "model", "build", at(model + ".ply"), "-o", at(model + ".model"), *(["--spacing", spacing] if spacing
-                                                                                            else []))
-            points = at(model + ".points")
-            subprocess.run(["rm", "-rf", points], check=True)
-            subprocess.run([pliant, "run", "--model", at(model + ".model"), "--source", "recording:" + sequence, "--lcm-url",
-                            "none", "--pace", "fast", "--points", points], stdout=subprocess.DEVNULL,
-                           stderr=subprocess.DEVNULL, check=False)  # not tracked in the last frame: told by the table
-            tracked, found = errors(truth, points, had)
-            cells = []
+        for model, spacing in (("true", None), ("anew", None), ("captured", SIGMAS)):
+            count, found = tracked(pliant, sequence, truth, had, at, model, model, spacing)
             for kind, e in found.items():
                 pooled.setdefault((model, kind), []).append(evaluate.percentiles(e))
-                cells.append("%.2f / %.2f mm" % (np.median(e) * 1e3, np.percentile(e, 95) * 1e3) if len(e) else "–")
-            print("| %s | %s | %d of %d | %s |" % (name, model, tracked, len(truth.files), " | ".join(cells)), flush=True)
+            print_row(name, model, "%d of %d" % (count, len(truth.files)), [millimetres(e) for e in found.values()])
+        for model in ("anew", "captured") if "--draws" in sys.argv else ():
+            each = [tracked(pliant, sequence, truth, had, at, model, "draw", spacing)[1] for spacing in DRAWS]
+            print_row(name, model + ", mean of %d spacings" % len(DRAWS), "",
+                      np.exp(np.mean(np.log([[millimetres(e) for e in found.values()] for found in each]), axis=0)))
     for model in ("anew", "captured"):
         cells = []
         for kind in ("all", "rigid", "deformed"):

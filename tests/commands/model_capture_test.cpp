@@ -5,10 +5,25 @@
 #include "drivers/geometry_files/geometry.hpp"
 #include "drivers/lcm/frame_assembler.hpp"
 #include "drivers/lcm/subscriber.hpp"
+#include "drivers/recording/recording_writer.hpp"
+#include "drivers/simulated/still_mesh.hpp"
+#include "tests/capture/other_objects.hpp"
 #include "tests/commands/capture_command.hpp"
 
 namespace pliant::test {
 namespace {
+
+/// A recording of an object that stands before the simulated sensor.
+void record(const Geometry& object, const std::string& options, const std::string& folder) {
+  const auto source = open_still_mesh(object, options);
+  ASSERT_TRUE(source) << source.error().message;
+  const auto recording = RecordingWriter::create(folder, {(*source)->intrinsics(), (*source)->sensor()});
+  ASSERT_TRUE(recording) << recording.error().message;
+  SourceItem item;
+  for ((*source)->next(0, item); item.event == SourceEvent::frame; (*source)->next(0, item))
+    ASSERT_TRUE((*recording)->write(item.frame));
+  ASSERT_TRUE((*recording)->finish());
+}
 
 TEST_F(CaptureCommand, MakesAModelThatCanBeTracked) {
   std::vector<std::string> command = words(kTurned, at("box.model"));
@@ -40,6 +55,34 @@ TEST_F(CaptureCommand, MarksAModelOfOneSideAsFrontOnly) {
   EXPECT_NE(captured.out.find("not the front right"), std::string::npos) << captured.out;
   const Ended info = run_pliant({"model", "info", at("front.model")});
   EXPECT_NE(info.out.find("back: unknown"), std::string::npos) << info.out;
+}
+
+TEST_F(CaptureCommand, SaysThatItCannotSeeABottleTurn) {
+  const std::string folder = at("turned");
+  record(plain_bottle(), "?motion=turned&frames=90&width=320&height=240", folder);
+  const Ended captured = run_pliant(words("recording:" + folder, at("bottle.model")));
+  EXPECT_EQ(captured.code, 0) << captured.err;
+  EXPECT_NE(captured.err.find("whether it turns cannot be seen; carry the sensor"), std::string::npos)
+      << captured.err;
+  EXPECT_NE(captured.err.find("its turning could not be seen: in 89 of 90 pictures"), std::string::npos)
+      << captured.err;
+  EXPECT_NE(captured.err.find("The model is of one side"), std::string::npos) << captured.err;
+  EXPECT_NE(captured.out.find("seen: 1 of 8 sides"), std::string::npos) << captured.out;
+  const Ended info = run_pliant({"model", "info", at("bottle.model")});
+  EXPECT_NE(info.out.find("back: unknown"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("characterisable: no"), std::string::npos) << info.out;
+}
+
+TEST_F(CaptureCommand, DoesNotDoubtABottleWhoseLugsShowItsTurning) {
+  const std::string folder = at("turned");
+  record(bottle_with_lugs(), "?motion=turned&frames=100&width=320&height=240", folder);
+  std::vector<std::string> command = words("recording:" + folder, at("bottle.model"));
+  command[9] = std::string("0.002");  // lugs are two centimetres wide
+  const Ended captured = run_pliant(command);
+  EXPECT_EQ(captured.code, 0) << captured.err;
+  EXPECT_EQ(captured.err.find("featureless"), std::string::npos) << captured.err;
+  EXPECT_EQ(captured.err.find("could not be seen"), std::string::npos) << captured.err;
+  EXPECT_NE(captured.out.find("seen: 8 of 8 sides\n"), std::string::npos) << captured.out;
 }
 
 TEST_F(CaptureCommand, CapturingTwiceGivesTheSameBytes) {
@@ -92,6 +135,13 @@ TEST_F(CaptureCommand, PublishesTheModelAsItGrows) {
   while ((*tracker)->handle(100) > 0) {
   }
   EXPECT_EQ((*tracker)->counters().total(), 0);
+}
+
+TEST_F(CaptureCommand, AFolderThatIsMissingIsToldBeforeAnythingIsTurned) {
+  expect_refused(run_pliant(words(kTurned, at("none/box.model"))), 3, {"none/box.model", "make it first"});
+  std::vector<std::string> command = words(kTurned, at("box.model"));
+  command.insert(command.end(), {"--ply", at("none/box.ply")});
+  expect_refused(run_pliant(command), 3, {"none/box.ply", "make it first"});
 }
 
 TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
