@@ -14,7 +14,7 @@ constexpr int kFramesToReturn = 5;
 
 /// Work of the detector in one frame, in its units of about 1000 instructions: with the surface of a whole
 /// picture about as much as two tracked frames.
-constexpr std::int64_t kSearchBudget = 48500;
+constexpr std::int64_t kSearchBudget = 50000;
 /// Of the same work, what building the surface takes: pixels a unit.
 constexpr std::int64_t kPixelsEach = 40;
 
