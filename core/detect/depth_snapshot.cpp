@@ -123,15 +123,16 @@ bool DepthSnapshot::fit_normal(int u, int v, double metres, Normal16& out) const
       const int difference = d - centre;
       const int limit = static_cast<int>(noise + slope * distance);
       if (difference > limit || difference < -limit) continue;
+      const std::int64_t x = du, y = dv;
       ++n;
-      su += du;
-      sv += dv;
+      su += x;
+      sv += y;
       sd += difference;
-      suu += du * du;
-      suv += du * dv;
-      svv += dv * dv;
-      sud += du * difference;
-      svd += dv * difference;
+      suu += x * x;
+      suv += x * y;
+      svv += y * y;
+      sud += x * difference;
+      svd += y * difference;
     }
   }
   if (n < 6) return false;
