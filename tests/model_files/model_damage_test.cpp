@@ -102,12 +102,13 @@ TEST(ModelDamage, CountsOverTheLimitsWithTheRightChecksum) {
       {&ModelHeader::patch_count, limits::kMaxPatches},
       {&ModelHeader::surface_link_count, limits::kMaxBorders},
       {&ModelHeader::body_link_count, limits::kMaxBodyLinks}};
-  for (const auto& [count, most] : network) {
-    EXPECT_EQ(with_header([&](ModelHeader& h) { h.*count = static_cast<std::uint32_t>(most) + 1; }),
-              ModelFault::over_limit);
-    EXPECT_EQ(with_header([&](ModelHeader& h) { h.*count = 0xFFFFFFFF; }), ModelFault::over_limit);
-    EXPECT_EQ(with_header([&](ModelHeader& h) { h.*count = static_cast<std::uint32_t>(most); }),
-              ModelFault::corrupt);
+  for (const auto& limit : network) {
+    const auto with_count = [count = limit.first](std::size_t n) {
+      return with_header([&](ModelHeader& h) { h.*count = static_cast<std::uint32_t>(n); });
+    };
+    EXPECT_EQ(with_count(limit.second + 1), ModelFault::over_limit);
+    EXPECT_EQ(with_count(0xFFFFFFFF), ModelFault::over_limit);
+    EXPECT_EQ(with_count(limit.second), ModelFault::corrupt);
   }
   EXPECT_EQ(with_header([](ModelHeader& h) { h.patch_count = 0; }), ModelFault::corrupt);
   EXPECT_EQ(with_header([](ModelHeader& h) { --h.patch_count; }), ModelFault::corrupt);
