@@ -76,9 +76,10 @@ double gain_of(const PatchTables& patches, const PlaneMoments& moments, std::siz
 
 }  // namespace
 
-/// The patches' centres and integer poses.
-void place_patches(const ModelTables& model, const PatchTables& patches, PatchWarp& warp) noexcept {
+void place_patches(const ModelTables& model, const PatchTables& patches, const ChosenPatches& chosen,
+                   PatchWarp& warp) noexcept {
   for (std::size_t p = 0; p < patches.count; ++p) {
+    if (!chosen[p]) continue;
     warp.fixed[p] = FixedPose(warp.pose[p], model.centre);
     const Vector3 c = warp.pose[p] * patches.centres[p] * kUnitsPerMetre;
     warp.centre[p] = {static_cast<std::int32_t>(c.x()), static_cast<std::int32_t>(c.y()),
@@ -98,7 +99,7 @@ void gather_readings(const PatchLook& look, const PointState& points, const Chos
                      PatchWarp& warp) noexcept {
   for (std::size_t p = 0; p < look.patches.count; ++p)
     if (chosen[p]) warp.moments[p] = PlaneMoments();
-  place_patches(look.model, look.patches, warp);
+  place_patches(look.model, look.patches, chosen, warp);
   gather(look, points, chosen, warp);
 }
 

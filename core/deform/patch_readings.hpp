@@ -49,7 +49,8 @@ void measure_fits(const PatchLook& look, const PointState& points, const ChosenP
 /// Adds a patch's readings to its normal equations: radians and metres about its centre.
 void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept;
 
-/// The patches' centres and integer poses.
-void place_patches(const ModelTables& model, const PatchTables& patches, PatchWarp& warp) noexcept;
+/// The centres and integer poses of the chosen patches.
+void place_patches(const ModelTables& model, const PatchTables& patches, const ChosenPatches& chosen,
+                   PatchWarp& warp) noexcept;
 
 }  // namespace pliant

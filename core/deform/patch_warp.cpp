@@ -292,7 +292,9 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
     else
       warp.steps[p] = StepMemory();
   find_rigid(patches, regions, warp);
-  place_patches(model, patches, warp);
+  ChosenPatches all;
+  all.fill(true);
+  place_patches(model, patches, all, warp);
 }
 
 }  // namespace pliant

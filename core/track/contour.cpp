@@ -7,7 +7,6 @@ namespace pliant {
 
 namespace {
 
-constexpr std::int32_t kCos80 = 2845;  // Q14
 /// So many pixels without a reading may be a hole; more are the sensor's shadow, behind the object's edge.
 constexpr int kHole = 4;
 /// Towards the camera the object may be this many times deeper than the search reaches: it bulges there.
@@ -19,12 +18,6 @@ constexpr int kMostSteps = 40;
 enum class Seen : std::uint8_t { object, other, nothing, hidden };
 
 }  // namespace
-
-bool on_rim(const IntPoint& point, const IntPoint& normal) noexcept {
-  const std::int32_t towards =
-      -(normal.x * (point.x >> 4) + normal.y * (point.y >> 4) + normal.z * (point.z >> 4));
-  return std::abs(towards / 16384) <= ((kCos80 * (point.z >> 4)) >> 14);
-}
 
 bool find_contour(const Surface& surface, const Projector& projector, const ContourReach& reach,
                   const IntPoint& point, const IntPoint& normal, std::int32_t& distance) noexcept {

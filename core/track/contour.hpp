@@ -1,6 +1,8 @@
 // Where the object's outline has moved: what the surface cannot tell of motion along itself.
 #pragma once
 
+#include <cstdlib>
+
 #include "core/camera/surface.hpp"
 #include "core/track/model_tables.hpp"
 
@@ -14,7 +16,12 @@ struct ContourReach {
 
 /// Does the surface at `point` with `normal` (unit, Q14) turn away from the camera just there, within 10°?
 /// Its point lies on the outline, but for 1.5 % of the surface's radius of curvature.
-[[nodiscard]] bool on_rim(const IntPoint& point, const IntPoint& normal) noexcept;
+[[nodiscard]] inline bool on_rim(const IntPoint& point, const IntPoint& normal) noexcept {
+  constexpr std::int32_t kCos80 = 2845;  // Q14
+  const std::int32_t towards =
+      -(normal.x * (point.x >> 4) + normal.y * (point.y >> 4) + normal.z * (point.z >> 4));
+  return std::abs(towards / 16384) <= ((kCos80 * (point.z >> 4)) >> 14);
+}
 
 /// How far the outline lies from such a point along its normal, 1/16 mm, positive outwards: from the point's
 /// pixel outwards to the last reading of the object, or inwards to the first. What stands farther behind is

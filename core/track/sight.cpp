@@ -7,6 +7,15 @@
 
 namespace pliant {
 
+namespace {
+
+/// Where the surface is steep, a reading within the limit of a point lies farther off in depth.
+bool is_near(std::uint16_t z8, const IntPoint& point, std::int32_t limit) noexcept {
+  return z8 != 0 && std::abs(2 * z8 - point.z) <= 4 * limit;
+}
+
+}  // namespace
+
 Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) const noexcept {
   Look out;
   out.normal = normal;
@@ -20,8 +29,9 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
   Look best = out;
   for (int dv = -1; dv <= 1; ++dv)
     for (int du = -1; du <= 1; ++du) {
+      if ((du == 0 && dv == 0) || !is_near(surface_.depth(u + du, v + dv), out.point, limit)) continue;
       Look other = out;
-      if ((du != 0 || dv != 0) && try_pixel(u + du, v + dv, limit, other) &&
+      if (try_pixel(u + du, v + dv, limit, other) &&
           (best.sight == Sight::none || std::abs(other.residual) < std::abs(best.residual)))
         best = other;
     }
@@ -52,7 +62,7 @@ bool Sighting::look_beside(std::int32_t reach, Look& look) const noexcept {
 
 bool Sighting::try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept {
   const std::uint16_t z8 = surface_.depth(u, v);
-  if (z8 == 0 || std::abs(2 * z8 - out.point.z) > 4 * limit) return false;
+  if (!is_near(z8, out.point, limit)) return false;
   const IntPoint q = surface_.vertex(u, v, z8);
   const std::int32_t residual = plane_distance(q, out.point, out.normal) >> 4;
   if (std::abs(residual) > limit) return false;
