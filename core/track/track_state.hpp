@@ -81,9 +81,9 @@ struct PointState {
   void reset() noexcept;
 };
 
-inline constexpr std::uint8_t kEvidenceMax = 12;
-/// Evidence from which a point counts as deformed; three clear frames bring it there.
-inline constexpr std::uint8_t kEvidenceDeformed = 6;
+inline constexpr std::uint8_t kEvidenceMax = 8;
+/// Evidence from which a point counts as deformed: two clear frames, since one may be noise.
+inline constexpr std::uint8_t kEvidenceDeformed = 4;
 
 /// Frames over which a point's misfit is averaged: two seconds at 30 Hz, far slower than a hand.
 inline constexpr std::int32_t kMisfitFrames = 64;
