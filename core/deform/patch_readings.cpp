@@ -1,8 +1,11 @@
 #include "core/deform/patch_readings.hpp"
 
+#include <algorithm>
+
 #include "core/track/aside.hpp"
 #include "core/track/associate.hpp"
 #include "core/track/contour.hpp"
+#include "core/track/placed_points.hpp"
 #include "core/track/plane_equations.hpp"
 
 namespace pliant {
@@ -26,39 +29,44 @@ void add_contour(const PatchLook& look, const IntPoint& at, const IntPoint& n, c
     add_plane_row(moments, at, n, distance * 16, tukey_weight(distance, reach), centre);
 }
 
-/// The integer kernel: every point of the chosen patches that faces the camera, beside the reading of its
+/// The integer kernel: every point of a patch that faces the camera, beside the reading of its
 /// pixel, or that lies on the outline, beside that, into the moments of its patch about the patch's centre.
 /// Formats are those of PlaneMoments. Overflow bounds: gates <= 8191, so that a difference squared stays
 /// below 2^26 and three below 2^28; arms are at most a model's extent, 2^16, times Q14 normals: below 2^31
 /// for the difference of two.
-[[gnu::noinline]] void gather(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
+[[gnu::noinline]] void gather(const PatchLook& look, const PointState& points, std::size_t p,
                               PatchWarp& warp) noexcept {
-  const ModelTables& model = look.model;
-  for (std::size_t i = 0; i < model.size; ++i) {
-    const std::size_t p = look.patches.patch_of[i];
-    if (!chosen[p]) continue;
-    const FixedPose& pose = warp.fixed[p];
-    const IntPoint n = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
-    const IntPoint at = pose.point(model.x[i], model.y[i], model.z[i]);
-    if (!faces_camera(at, n, kCos75)) {
-      if (on_rim(at, n)) add_contour(look, at, n, warp.centre[p], warp.moments[p]);
-      continue;
+  const IntPoint centre = warp.centre[p];
+  PlaneMoments& moments = warp.moments[p];
+  const PatchPoints& patch = look.model.by_patch;
+  PlacedPoints placed;
+  const std::size_t begin = patch.begin[p], end = begin + patch.count[p];
+  for (std::size_t first = begin; first < end; first += PlacedPoints::kMost) {
+    const std::size_t count = std::min(PlacedPoints::kMost, end - first);
+    placed.place(patch, first, count, warp.fixed[p]);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (placed.side[k] == Side::away) continue;
+      const IntPoint at = placed.point(k), n = placed.normal(k);
+      if (placed.side[k] == Side::rim) {
+        add_contour(look, at, n, centre, moments);
+        continue;
+      }
+      int u = 0, v = 0;
+      if (!look.projector.project(at, u, v)) continue;
+      const std::uint16_t z8 = look.surface.depth_at(u, v);
+      const std::int32_t gap = 2 * z8 - at.z;
+      if (z8 != 0 && -gap > look.gates.outward) continue;
+      if (z8 == 0 || gap > look.gates.inward) {
+        add_aside(look, u, v, at, n, centre, moments);
+        continue;
+      }
+      const IntPoint q = look.surface.vertex(u, v, z8);
+      const std::int32_t residual = plane_distance(q, at, n) - points.misfit[patch.index[first + k]];
+      const std::int32_t limit = (residual > 0 ? look.gates.outward : look.gates.inward) * 16;
+      const std::int32_t w = tukey_weight(residual, limit);
+      if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
+      add_plane_row(moments, at, n, residual, w, centre);
     }
-    int u = 0, v = 0;
-    if (!look.projector.project(at, u, v)) continue;
-    const std::uint16_t z8 = look.surface.depth_at(u, v);
-    const std::int32_t gap = 2 * z8 - at.z;
-    if (z8 != 0 && -gap > look.gates.outward) continue;
-    if (z8 == 0 || gap > look.gates.inward) {
-      add_aside(look, u, v, at, n, warp.centre[p], warp.moments[p]);
-      continue;
-    }
-    const IntPoint q = look.surface.vertex(u, v, z8);
-    const std::int32_t residual = plane_distance(q, at, n) - points.misfit[i];
-    const std::int32_t limit = (residual > 0 ? look.gates.outward : look.gates.inward) * 16;
-    const std::int32_t w = tukey_weight(residual, limit);
-    if (w == 0 || !look.surface.faces(u, v, Surface::normal_step(z8, look.gates.spacing), n)) continue;
-    add_plane_row(warp.moments[p], at, n, residual, w, warp.centre[p]);
   }
 }
 
@@ -97,10 +105,12 @@ void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept {
 
 void gather_readings(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
                      PatchWarp& warp) noexcept {
-  for (std::size_t p = 0; p < look.patches.count; ++p)
-    if (chosen[p]) warp.moments[p] = PlaneMoments();
   place_patches(look.model, look.patches, chosen, warp);
-  gather(look, points, chosen, warp);
+  for (std::size_t p = 0; p < look.patches.count; ++p) {
+    if (!chosen[p]) continue;
+    warp.moments[p] = PlaneMoments();
+    gather(look, points, p, warp);
+  }
 }
 
 void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,

@@ -17,6 +17,7 @@ std::int32_t rounded(double x) {
 void ModelTables::lay_out(Workspace& workspace, std::size_t points) noexcept {
   size = points;
   for (auto* table : {&x, &y, &z, &nx, &ny, &nz}) *table = workspace.take<std::int16_t>(points);
+  by_patch.lay_out(workspace, points);
 }
 
 void ModelTables::start(const ModelView& view) noexcept {
@@ -33,6 +34,7 @@ void ModelTables::start(const ModelView& view) noexcept {
     ny[i] = view.normals()[i].y;
     nz[i] = view.normals()[i].z;
   }
+  by_patch.start(*this);
 }
 
 FixedPose::FixedPose(const RigidTransform& pose, const Vector3& centre) noexcept {

@@ -7,6 +7,7 @@
 #include "core/camera/surface.hpp"
 #include "core/memory/workspace.hpp"
 #include "core/model/model_view.hpp"
+#include "core/track/patch_points.hpp"
 
 namespace pliant {
 
@@ -18,6 +19,7 @@ struct ModelTables {
   std::int32_t spacing = 0;          ///< 1/16 mm
   std::span<std::int16_t> x, y, z;
   std::span<std::int16_t> nx, ny, nz;
+  PatchPoints by_patch;  ///< the same patch by patch
   const ModelView* model = nullptr;
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;

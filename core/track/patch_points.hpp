@@ -1,0 +1,30 @@
+// The model's points ordered for kernels that work patch by patch.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/limits.hpp"
+#include "core/memory/workspace.hpp"
+
+namespace pliant {
+
+struct ModelTables;
+
+/// The model's points once more, patch by patch, so that what shares a pose and a piece of the picture stands
+/// together. Patches begin at multiples of kBlock; what fills them up is zero.
+struct PatchPoints {
+  static constexpr std::size_t kBlock = 8;
+
+  std::array<std::uint16_t, limits::kMaxPatches> begin{};  ///< of each patch in the arrays below
+  std::array<std::uint16_t, limits::kMaxPatches> count{};
+  std::span<std::uint16_t> index;  ///< in the model, ascending within a patch
+  std::span<std::int16_t> x, y, z, nx, ny, nz;
+
+  void lay_out(Workspace& workspace, std::size_t points) noexcept;
+  /// From the tables that the model itself fills.
+  void start(const ModelTables& model) noexcept;
+};
+
+}  // namespace pliant

@@ -1,0 +1,31 @@
+// The points of a patch under one pose, many at a time: loops over arrays, of which compilers make vectors.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/track/model_tables.hpp"
+
+namespace pliant {
+
+/// How a surface stands to the line of sight.
+enum class Side : std::int32_t {
+  away,   ///< turned away, or seen too flat
+  rim,    ///< on the outline: on_rim()
+  facing  ///< faces_camera() within 75°
+};
+
+/// Some points of a patch in the camera frame: the values of FixedPose, one array a coordinate.
+struct PlacedPoints {
+  static constexpr std::size_t kMost = 64;
+
+  std::array<std::int32_t, kMost> x, y, z, nx, ny, nz;
+  std::array<Side, kMost> side;
+
+  /// Places up to kMost points from `first` on, a place in `points`, rounded up to whole blocks.
+  void place(const PatchPoints& points, std::size_t first, std::size_t count, const FixedPose& pose) noexcept;
+  [[nodiscard]] IntPoint point(std::size_t k) const noexcept { return {x[k], y[k], z[k]}; }
+  [[nodiscard]] IntPoint normal(std::size_t k) const noexcept { return {nx[k], ny[k], nz[k]}; }
+};
+
+}  // namespace pliant
