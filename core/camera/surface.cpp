@@ -65,6 +65,7 @@ void Surface::start(const Intrinsics& camera, const SensorDescription& sensor, K
   for (const std::span<std::uint16_t>& buffer : {smooth_, converted_, cleaned_})
     clear(buffer.data(), buffer.size());
   std::fill(normals_.begin(), normals_.end(), KeptNormal());
+  picture_key_ = 0;
   picture_ = smooth_.data() + stride_ * static_cast<std::size_t>(kMostStep) + kMargin;
   window_ = Window();
 }
@@ -72,6 +73,12 @@ void Surface::start(const Intrinsics& camera, const SensorDescription& sensor, K
 void Surface::build(const DepthFrame& frame, Window window) noexcept {
   std::uint16_t* const picture = picture_;
   const auto stride = static_cast<std::ptrdiff_t>(stride_);
+  // Kept normals are of older pictures from now on; when their numbers begin anew, they go.
+  picture_key_ = static_cast<std::uint16_t>(picture_key_ + kKeyOfPicture);
+  if (picture_key_ == 0) {
+    std::fill(normals_.begin(), normals_.end(), KeptNormal());
+    picture_key_ = kKeyOfPicture;
+  }
   // What the last window held must not show through.
   if (!window_.empty())
     for (int v = window_.v0; v < window_.v1; ++v)
@@ -94,8 +101,6 @@ void Surface::build(const DepthFrame& frame, Window window) noexcept {
   const auto row_of = [&](std::span<std::uint16_t> rows, int v) -> const std::uint16_t* {
     return v < wide.v0 || v >= wide.v1 ? nothing : ring(rows, v);
   };
-  for (int v = window_.v0; v < window_.v1; ++v)
-    std::fill_n(normals_.begin() + static_cast<std::ptrdiff_t>(v) * width_ + window_.u0, count, KeptNormal());
   // One row after the other through the three stages, each a row behind the one before.
   for (int v = wide.v0; v < wide.v1 + 2; ++v) {
     if (v < wide.v1) {
@@ -126,7 +131,7 @@ PixelSpan Surface::pixel_span(double metres) const noexcept {
 
 Surface::KeptNormal Surface::take_normal(int u, int v, int step) const noexcept {
   KeptNormal out;
-  out.step = static_cast<std::uint8_t>(step);
+  out.key = static_cast<std::uint16_t>(picture_key_ + step);
   const std::uint16_t* const here = at(u, v);
   const std::int32_t z = *here;
   if (z == 0) return out;
@@ -167,37 +172,17 @@ Surface::KeptNormal Surface::take_normal(int u, int v, int step) const noexcept 
   out.x = static_cast<std::int16_t>(nx >> shift);
   out.y = static_cast<std::int16_t>(ny >> shift);
   out.z = static_cast<std::int16_t>(nz >> shift);
-  out.exists = 1;
   return out;
 }
 
-const Surface::KeptNormal& Surface::raw_normal(int u, int v, int step) const noexcept {
-  KeptNormal& kept =
-      normals_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
-  if (kept.step != step) kept = take_normal(u, v, step);
-  return kept;
-}
-
 bool Surface::normal(int u, int v, int step, Normal16& out) const noexcept {
-  const KeptNormal n = raw_normal(u, v, step);
-  if (n.exists == 0) return false;
+  const KeptNormal& n = raw_normal(u, v, step);
   const auto square = static_cast<std::uint32_t>(n.x * n.x + n.y * n.y + n.z * n.z);
   const auto norm = static_cast<std::int32_t>(integer_sqrt(square));
   if (norm == 0) return false;
   out = {static_cast<std::int16_t>(n.x * 16384 / norm), static_cast<std::int16_t>(n.y * 16384 / norm),
          static_cast<std::int16_t>(n.z * 16384 / norm), 0};
   return true;
-}
-
-bool Surface::faces(int u, int v, int step, const IntPoint& direction) const noexcept {
-  const KeptNormal n = raw_normal(u, v, step);
-  if (n.exists == 0) return true;
-  // Products below 2^14 · 2^14.1, their sum |n| · cos · 2^14 below 2^30.
-  const std::int32_t dot = n.x * direction.x + n.y * direction.y + n.z * direction.z;
-  if (dot <= 0) return false;
-  const auto square = static_cast<std::uint32_t>(n.x * n.x + n.y * n.y + n.z * n.z);  // below 2^30
-  const auto cosine = static_cast<std::uint32_t>(dot >> 13);                          // 2 · |n| · cos
-  return cosine * cosine >= square;
 }
 
 }  // namespace pliant

@@ -78,7 +78,16 @@ class Surface {
   [[nodiscard]] bool normal(int u, int v, int step, Normal16& out) const noexcept;
   /// Does the surface at the pixel face along `direction` (unit, Q14) within 60°? Without a normal there:
   /// true.
-  [[nodiscard]] bool faces(int u, int v, int step, const IntPoint& direction) const noexcept;
+  [[nodiscard]] bool faces(int u, int v, int step, const IntPoint& direction) const noexcept {
+    const KeptNormal& n = raw_normal(u, v, step);
+    if (n.is_none()) return true;
+    // Products below 2^14 · 2^14.1, their sum |n| · cos · 2^14 below 2^30.
+    const std::int32_t dot = n.x * direction.x + n.y * direction.y + n.z * direction.z;
+    if (dot <= 0) return false;
+    const auto square = static_cast<std::uint32_t>(n.x * n.x + n.y * n.y + n.z * n.z);  // below 2^30
+    const auto cosine = static_cast<std::uint32_t>(dot >> 13);                          // 2 · |n| · cos
+    return cosine * cosine >= square;
+  }
   /// The step for normal() that spans about that length at depth z8.
   [[nodiscard]] static int normal_step(std::uint16_t z8, PixelSpan length) noexcept {
     if (z8 == 0) return 1;
@@ -110,13 +119,23 @@ class Surface {
   static_assert(kMargin >= kRowSlack && kMargin >= kMostStep);
 
   /// A normal of any length, components below 2^14, kept once it was asked for: the same pixels are looked at
-  /// again and again in a frame.
+  /// again and again in a frame. All zero where there is none.
   struct KeptNormal {
     std::int16_t x = 0, y = 0, z = 0;
-    std::uint8_t step = 0;  ///< that it was taken with; 0: not yet
-    std::uint8_t exists = 0;
+    std::uint16_t key = 0;  ///< of the picture and the step that it was taken with
+
+    [[nodiscard]] bool is_none() const noexcept { return (x | y | z) == 0; }
   };
-  [[nodiscard]] const KeptNormal& raw_normal(int u, int v, int step) const noexcept;
+  /// Pictures count in steps of this, so that a key holds a step beside them.
+  static constexpr std::uint16_t kKeyOfPicture = 16;
+  static_assert(kMostStep < kKeyOfPicture);
+
+  [[nodiscard]] const KeptNormal& raw_normal(int u, int v, int step) const noexcept {
+    KeptNormal& kept = normals_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+                                static_cast<std::size_t>(u)];
+    if (kept.key != picture_key_ + step) kept = take_normal(u, v, step);
+    return kept;
+  }
   [[nodiscard]] KeptNormal take_normal(int u, int v, int step) const noexcept;
   [[nodiscard]] const std::uint16_t* at(int u, int v) const noexcept {
     return picture_ + static_cast<std::ptrdiff_t>(v) * static_cast<std::ptrdiff_t>(stride_) + u;
@@ -133,6 +152,7 @@ class Surface {
   std::span<std::uint16_t> smooth_;         // the picture and its margins
   std::uint16_t* picture_ = nullptr;        // pixel (0, 0) in it
   std::span<KeptNormal> normals_;           // of the picture, row by row: a cache
+  std::uint16_t picture_key_ = 0;           // of the last build()
   std::span<std::uint16_t> converted_;      // kRing rows, then one of zeros
   std::span<std::uint16_t> cleaned_;        // kRing rows
   std::span<std::int16_t> ray_x_, ray_y_;   // (u - cx) / fx, (v - cy) / fy in Q14

@@ -109,6 +109,27 @@ TEST(Surface, FindsNormalsOfASphere) {
   EXPECT_GT(looked, 2000);
 }
 
+TEST(Surface, NormalsAreOfTheLatestPictureHoweverManyWereBefore) {
+  const Intrinsics camera = synthetic::small_camera();
+  const auto slope = [&](double per_pixel) {
+    Picture picture(camera);
+    for (int u = 0; u < camera.width; ++u) picture.block(u, 0, u + 1, camera.height, 0.8 + per_pixel * u);
+    return picture;
+  };
+  Picture one = slope(0.0005), other = slope(-0.0005);
+  Observed o;
+  const Window window{150, 110, 170, 130};
+  // the numbers that pictures bear begin anew after 4095
+  for (const int times : {1, 4094, 4095, 4096}) {
+    Normal16 before, after;
+    o.surface.build(one.frame(), window);
+    ASSERT_TRUE(o.surface.normal(160, 120, 2, before));
+    for (int i = 0; i < times; ++i) o.surface.build(other.frame(), window);
+    ASSERT_TRUE(o.surface.normal(160, 120, 2, after));
+    EXPECT_LT(before.x * after.x, 0) << times;
+  }
+}
+
 TEST(Surface, FacesMeansWithinSixtyDegrees) {
   Picture picture(synthetic::small_camera());
   picture.wall(1.0);
