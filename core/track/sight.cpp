@@ -21,28 +21,35 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
   out.normal = normal;
   out.point = point;
   int u = 0, v = 0;
-  if (!faces_camera(out.point, out.normal, 0) || !projector_.project(out.point, u, v)) return out;
+  if (!faces_camera(point, normal, 0) || !projector_.project(point, u, v)) return out;
   out.facing = true;
-  const std::int32_t limit = tolerance_.deformed(out.point.z);
-  if (try_pixel(u, v, limit, out)) return out;
-  const std::uint16_t centre = surface_.depth(u, v);
-  Look best = out;
-  for (int dv = -1; dv <= 1; ++dv)
-    for (int du = -1; du <= 1; ++du) {
-      if ((du == 0 && dv == 0) || !is_near(surface_.depth(u + du, v + dv), out.point, limit)) continue;
-      Look other = out;
-      if (try_pixel(u + du, v + dv, limit, other) &&
-          (best.sight == Sight::none || std::abs(other.residual) < std::abs(best.residual)))
-        best = other;
-    }
-  if (best.sight == Sight::agrees) return best;
+  const std::int32_t limit = tolerance_.deformed(point.z);
+  int best_u = u, best_v = v;
+  bool agrees = agrees_at(u, v, limit, point, normal, out.residual);
+  if (!agrees)
+    for (int vv = v - 1; vv <= v + 1; ++vv)
+      for (int uu = u - 1; uu <= u + 1; ++uu) {
+        std::int32_t residual = 0;
+        if ((uu == u && vv == v) || !agrees_at(uu, vv, limit, point, normal, residual) ||
+            (agrees && std::abs(residual) >= std::abs(out.residual)))
+          continue;
+        agrees = true;
+        out.residual = residual;
+        best_u = uu;
+        best_v = vv;
+      }
+  if (agrees) {
+    out.sight = Sight::agrees;
+    out.match = best_v * surface_.width() + best_u;
+    return out;
+  }
+  const std::uint16_t centre = surface_.depth_at(u, v);
   if (centre == 0) return out;
   const IntPoint q = surface_.vertex(u, v, centre);
   out.match = v * surface_.width() + u;
-  const std::int32_t gap = std::min(std::abs(q.z - out.point.z), 8191);
-  out.sight = q.z > out.point.z ? Sight::in_front : Sight::behind;
-  out.residual =
-      gap == 8191 ? (q.z > out.point.z ? -8191 : 8191) : plane_distance(q, out.point, out.normal) >> 4;
+  const std::int32_t gap = std::min(std::abs(q.z - point.z), 8191);
+  out.sight = q.z > point.z ? Sight::in_front : Sight::behind;
+  out.residual = gap == 8191 ? (q.z > point.z ? -8191 : 8191) : plane_distance(q, point, normal) >> 4;
   return out;
 }
 
@@ -60,16 +67,14 @@ bool Sighting::look_beside(std::int32_t reach, Look& look) const noexcept {
   return true;
 }
 
-bool Sighting::try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept {
-  const std::uint16_t z8 = surface_.depth(u, v);
-  if (!is_near(z8, out.point, limit)) return false;
-  const IntPoint q = surface_.vertex(u, v, z8);
-  const std::int32_t residual = plane_distance(q, out.point, out.normal) >> 4;
-  if (std::abs(residual) > limit) return false;
-  if (!surface_.faces(u, v, Surface::normal_step(z8, spacing_), out.normal)) return false;
-  out.sight = Sight::agrees;
-  out.residual = residual;
-  out.match = v * surface_.width() + u;
+bool Sighting::agrees_at(int u, int v, std::int32_t limit, const IntPoint& point, const IntPoint& normal,
+                         std::int32_t& residual) const noexcept {
+  const std::uint16_t z8 = surface_.depth_at(u, v);
+  if (!is_near(z8, point, limit)) return false;
+  const std::int32_t off = plane_distance(surface_.vertex(u, v, z8), point, normal) >> 4;
+  if (std::abs(off) > limit || !surface_.faces(u, v, Surface::normal_step(z8, spacing_), normal))
+    return false;
+  residual = off;
   return true;
 }
 

@@ -67,7 +67,9 @@ class Sighting {
   [[nodiscard]] const Tolerance& tolerance() const noexcept { return tolerance_; }
 
  private:
-  bool try_pixel(int u, int v, std::int32_t limit, Look& out) const noexcept;
+  /// A pixel of the picture, or beside it, where there is no reading.
+  bool agrees_at(int u, int v, std::int32_t limit, const IntPoint& point, const IntPoint& normal,
+                 std::int32_t& residual) const noexcept;
 
   const ModelTables& model_;
   const Surface& surface_;
