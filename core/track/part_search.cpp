@@ -45,12 +45,12 @@ PatchSet grow(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, 
 void measure(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, const RigidTransform& region,
              Attempt& attempt) noexcept {
   attempt.points = attempt.own = attempt.region = 0;
-  for (std::size_t p = 0; p < patches.count; ++p) {
-    if (!attempt.set.has(p) || !counts(warp, p, k)) continue;
+  attempt.set.for_each([&](std::size_t p) {
+    if (!counts(warp, p, k)) return;
     attempt.points += warp.seen[p];
     attempt.own += warp.seen[p] * patch_deviation(patches, warp, p, attempt.pose);
     attempt.region += warp.seen[p] * patch_deviation(patches, warp, p, region);
-  }
+  });
 }
 
 std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
@@ -126,17 +126,16 @@ RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp, co
   for (int round = 0; round < kFitRounds; ++round) {
     Vector3 middle = Vector3::Zero();
     double weight = 0;
-    for (std::size_t p = 0; p < patches.count; ++p)
-      if (set.has(p)) {
-        middle += warp.seen[p] * (pose * patches.centres[p]);
-        weight += warp.seen[p];
-      }
+    set.for_each([&](std::size_t p) {
+      middle += warp.seen[p] * (pose * patches.centres[p]);
+      weight += warp.seen[p];
+    });
     if (!(weight > 0)) return pose;
     middle /= weight;
     Symmetric6 a;
     Vector6 b = Vector6::Zero();
-    for (std::size_t p = 0; p < patches.count; ++p) {
-      if (!set.has(p) || !(warp.seen[p] > 0)) continue;
+    set.for_each([&](std::size_t p) {
+      if (!(warp.seen[p] > 0)) return;
       const double w = warp.seen[p];
       const Vector3 at = pose * patches.centres[p], gap = warp.pose[p] * patches.centres[p] - at;
       a.add_point_spring(w, at - middle);
@@ -144,7 +143,7 @@ RigidTransform fit_patches(const PatchTables& patches, const PatchWarp& warp, co
       b.tail<3>() += w * gap;
       a.add_turn_spring(w * arm * arm);
       b.head<3>() += w * arm * arm * turn_between(warp.pose[p].rotation, pose.rotation);
-    }
+    });
     Factor6 factor;
     if (!factor.factorise(a)) return pose;
     pose = motion_about(factor.solve(b), middle) * pose;

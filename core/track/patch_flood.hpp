@@ -14,15 +14,14 @@ template <typename Enters>
   std::array<std::uint8_t, kMaxPatches> queue{};
   std::size_t head = 0, tail = 0;
   PatchSet reached = set;
-  for (std::size_t p = 0; p < patches.count; ++p)
-    if (set.has(p)) queue[tail++] = static_cast<std::uint8_t>(p);
+  set.for_each([&](std::size_t p) { queue[tail++] = static_cast<std::uint8_t>(p); });
   while (head < tail) {
     const std::size_t p = queue[head++];
-    for (std::size_t q = 0; q < patches.count; ++q) {
-      if (!patches.neighbours[p].has(q) || reached.has(q) || !enters(p, q)) continue;
+    patches.neighbours[p].for_each([&](std::size_t q) {
+      if (reached.has(q) || !enters(p, q)) return;
       reached.add(q);
       queue[tail++] = static_cast<std::uint8_t>(q);
-    }
+    });
   }
   return reached;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -20,6 +21,13 @@ class PatchSet {
   [[nodiscard]] bool has(std::size_t p) const noexcept { return (words_[p >> 5] >> (p & 31) & 1U) != 0; }
   void add(std::size_t p) noexcept { words_[p >> 5] |= 1U << (p & 31); }
   [[nodiscard]] bool operator==(const PatchSet&) const noexcept = default;
+  /// Calls `visit(p)` for every patch of the set, ascending.
+  template <typename Visit>
+  void for_each(Visit visit) const noexcept {
+    for (std::size_t w = 0; w < words_.size(); ++w)
+      for (std::uint32_t rest = words_[w]; rest != 0; rest &= rest - 1)
+        visit(32 * w + static_cast<std::size_t>(std::countr_zero(rest)));
+  }
 
  private:
   std::array<std::uint32_t, (kMaxPatches + 31) / 32> words_{};
