@@ -98,13 +98,15 @@ bool ElasticSystem::solve(int iterations, double enough) noexcept {
     const double curvature = dot(direction_, scratch_);
     if (!(curvature > 1e-30) || !(along > enough)) break;
     const double step = along / curvature;
+    double next = 0;
     for (std::size_t m = 0; m < moving_count_; ++m) {
       const std::size_t p = moving_[m];
       x_[p] += step * direction_[p];
       residual_[p] -= step * scratch_[p];
       scratch_[p] = factor_[p].solve(residual_[p]);
+      // as dot() adds it up, while the next patch is solved
+      for (int i = 0; i < 6; ++i) next += residual_[p][i] * scratch_[p][i];
     }
-    const double next = dot(residual_, scratch_);
     const double keep = next / along;
     along = next;
     for (std::size_t m = 0; m < moving_count_; ++m)

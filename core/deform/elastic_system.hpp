@@ -27,11 +27,13 @@ class ElasticSystem {
   void clear(std::size_t patches) noexcept;
   /// Patch p stays where it is: what its links pull at is the rest. After clear(), before the links.
   void hold(std::size_t p) noexcept { held_[p] = true; }
+  [[nodiscard]] bool holds(std::size_t p) const noexcept { return held_[p]; }
 
   /// Own forces of patch p: readings and what anchors it.
   [[nodiscard]] Symmetric6& own(std::size_t p) noexcept { return own_[p]; }
   [[nodiscard]] Vector6& force(std::size_t p) noexcept { return force_[p]; }
-  /// `gap`: from where b puts the shared point to where a does; `turn`: rotation vector from b to a.
+  /// Nothing between two patches that are held. `gap`: from where b puts the shared point to where a does;
+  /// `turn`: rotation vector from b to a.
   void add_link(const ElasticLink& link, const Vector3& gap, const Vector3& turn) noexcept;
 
   /// The motions of all patches about their centres. Ends after `iterations`, or when what is left unbalanced

@@ -68,6 +68,7 @@ constexpr double kFreeTurn = 0.5;  // radians
 void add_borders(const PatchTables& patches, const Material& material, PatchWarp& warp) noexcept {
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
+    if (warp.system.holds(border.a) && warp.system.holds(border.b)) continue;
     const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
     const Vector3 at_a = a * border.centre, at_b = b * border.centre;
     const Vector3 turn = turn_between(a.rotation, b.rotation);
@@ -161,9 +162,9 @@ ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const
   }
   for (std::size_t p = 0; p < count; ++p) {
     warp.held[p] = fits[p];
-    for (std::size_t q = 0; q < count && warp.held[p]; ++q)
-      if (look.patches.neighbours[p].has(q) && warp.home[q] == warp.home[p] && here[q].weight > 0)
-        warp.held[p] = fits[q];
+    look.patches.neighbours[p].for_each([&](std::size_t q) {
+      if (warp.held[p] && warp.home[q] == warp.home[p] && here[q].weight > 0) warp.held[p] = fits[q];
+    });
     if (!warp.held[p]) warp.pose[p] = own[p];
     const PatchFit& now = warp.held[p] ? home[p] : here[p];
     astray[p] = (astray[p] && !warp.held[p]) || now.gain > kByChanceFreely * noise * noise;
