@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/fixed/integer_root.hpp"
+#include "core/track/pose_lanes.hpp"
 #include "core/track/sight.hpp"
 
 namespace pliant {
@@ -69,10 +70,12 @@ bool consider_rivals(const ModelTables& model, const RegionSet& regions, const S
 }
 
 /// A point that is not seen goes with the region, of those around it first, under which free space allows it.
-void carry_where_allowed(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
+/// True when that is another than its own.
+bool carry_where_allowed(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
                          const std::array<FixedPose, limits::kMaxRegions>& poses, PointState& points,
                          std::size_t i) noexcept {
-  if (!sighting.refuted(i, poses[static_cast<std::size_t>(points.home[i])])) return;
+  const std::int8_t home = points.home[i];
+  if (!sighting.refuted(i, poses[static_cast<std::size_t>(home)])) return false;
   const HomeCounts around = homes_around(model, points, i);
   int most = -1;
   for (std::size_t k = 0; k < regions.size(); ++k) {
@@ -80,6 +83,7 @@ void carry_where_allowed(const ModelTables& model, const RegionSet& regions, con
     most = around[k];
     points.home[i] = static_cast<std::int8_t>(k);
   }
+  return points.home[i] != home;
 }
 
 /// What one frame says of one point.
@@ -99,24 +103,37 @@ std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
       std::min<std::int64_t>(x * x + y * y + z * z, std::numeric_limits<std::uint32_t>::max()))));
 }
 
+using WarpLanes = std::array<PoseLanes, kMaxPatches>;
+
+/// warped_point() with the poses as lanes.
+IntPoint warped_by(const WarpLanes& lanes, const LabelContext& context, std::size_t i) noexcept {
+  const ModelTables& model = context.model;
+  const PointBlend& blend = context.patches.blend[i];
+  PointSum sum(model.x[i], model.y[i], model.z[i], 1 << (PointBlend::kShift - 1));
+  for (std::size_t j = 0; j < blend.weight.size() && blend.weight[j] != 0; ++j)
+    sum.add(lanes[blend.patch[j]], blend.weight[j]);
+  return sum.over(PointBlend::kShift);
+}
+
 /// What left its region and has no reading where the warp puts it, beside an outline most often, is matched
 /// by the radius search of deformed points: to the nearest reading within so many inlier limits.
 constexpr std::int32_t kBesideLimits = 2;
 
 /// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
-/// inlier limit, 3 σ or more, put it off its region.
-Verdict examine(const LabelContext& context, const Sighting& sighting, const FixedPose& home,
-                std::int8_t region, const Sighting::Look& at_home, std::size_t i) noexcept {
+/// inlier limit, 3 σ or more, put it off its region, which has it at `rigid`.
+Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sighting& sighting,
+                const IntPoint& rigid, std::int8_t region, const Sighting::Look& at_home,
+                std::size_t i) noexcept {
   Verdict verdict;
   verdict.look = at_home;
-  verdict.rigid = home.point(context.model.x[i], context.model.y[i], context.model.z[i]);
+  verdict.rigid = rigid;
   if (const std::size_t p = context.patches.patch_of[i];
       context.warp.rigid[p] && context.warp.home[p] == region) {
     verdict.warped = verdict.rigid;
     verdict.off = at_home.sight == Sight::in_front;
     return verdict;
   }
-  verdict.warped = warped_point(context.model, context.patches, context.warp, i);
+  verdict.warped = warped_by(lanes, context, i);
   verdict.distance = distance_of(verdict.rigid, verdict.warped);
   const bool apart = verdict.distance * 4 > 3 * context.tolerance.deformed(verdict.rigid.z);
   if (at_home.sight == Sight::agrees && !apart) return verdict;
@@ -165,6 +182,8 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
     poses[k] = FixedPose(regions[k].pose, model.centre);
     ++alive;
   }
+  WarpLanes lanes;
+  for (std::size_t p = 0; p < context.patches.count; ++p) lanes[p] = PoseLanes(context.warp.fixed[p]);
   const Sighting sighting(model, context.surface, context.projector, context.tolerance);
   const std::uint8_t enough_to_switch = context.with_memory ? kSwitchAt : std::uint8_t{1};
   SightCounts counts;
@@ -175,10 +194,11 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
     if (alive > 1 && context.border.has(context.patches.patch_of[i]) &&
         consider_rivals(model, regions, sighting, poses, limit, look, enough_to_switch, points, i))
       look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
-    if (alive > 1 && look.sight == Sight::none)
-      carry_where_allowed(model, regions, sighting, poses, points, i);
-    const Verdict verdict =
-        examine(context, sighting, poses[static_cast<std::size_t>(points.home[i])], points.home[i], look, i);
+    IntPoint rigid = look.point;
+    if (alive > 1 && look.sight == Sight::none &&
+        carry_where_allowed(model, regions, sighting, poses, points, i))
+      rigid = poses[static_cast<std::size_t>(points.home[i])].point(model.x[i], model.y[i], model.z[i]);
+    const Verdict verdict = examine(context, lanes, sighting, rigid, points.home[i], look, i);
     const Sight sight = verdict.look.sight;
     counts.facing += verdict.look.facing ? 1 : 0;
     counts.in_front += sight == Sight::in_front ? 1 : 0;
