@@ -43,7 +43,7 @@ void add_contour(const PatchLook& look, const IntPoint& at, const IntPoint& n, c
   const std::size_t begin = patch.begin[p], end = begin + patch.count[p];
   for (std::size_t first = begin; first < end; first += PlacedPoints::kMost) {
     const std::size_t count = std::min(PlacedPoints::kMost, end - first);
-    placed.place(patch, first, count, warp.fixed[p]);
+    placed.place({patch, first}, PatchPoints::filled_up(count), warp.fixed[p]);
     for (std::size_t k = 0; k < count; ++k) {
       if (placed.side[k] == Side::away) continue;
       const IntPoint at = placed.point(k), n = placed.normal(k);

@@ -19,7 +19,7 @@ void PatchPoints::start(const ModelTables& model) noexcept {
   std::size_t end = 0;
   for (std::size_t p = 0; p < count.size(); ++p) {
     begin[p] = static_cast<std::uint16_t>(end);
-    end += (count[p] + kBlock - 1) / kBlock * kBlock;
+    end += filled_up(count[p]);
     count[p] = 0;
   }
   for (auto* table : {&x, &y, &z, &nx, &ny, &nz}) std::fill(table->begin(), table->end(), std::int16_t{0});

@@ -22,6 +22,10 @@ struct PatchPoints {
   std::span<std::uint16_t> index;  ///< in the model, ascending within a patch
   std::span<std::int16_t> x, y, z, nx, ny, nz;
 
+  /// So many points with what fills up their last block.
+  [[nodiscard]] static constexpr std::size_t filled_up(std::size_t points) noexcept {
+    return (points + kBlock - 1) / kBlock * kBlock;
+  }
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
   /// From the tables that the model itself fills.
   void start(const ModelTables& model) noexcept;

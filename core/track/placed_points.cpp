@@ -5,8 +5,7 @@
 
 namespace pliant {
 
-void PlacedPoints::place(const PatchPoints& points, std::size_t first, std::size_t count,
-                         const FixedPose& pose) noexcept {
+void PlacedPoints::place(const PointColumns& from, std::size_t count, const FixedPose& pose) noexcept {
   // 16 bits each, as Q14 of a rotation fits: products of 16 bits are what vectors multiply best.
   std::array<std::int16_t, 9> r{};
   for (std::size_t k = 0; k < r.size(); ++k) r[k] = static_cast<std::int16_t>(pose.r[k]);
@@ -16,15 +15,12 @@ void PlacedPoints::place(const PatchPoints& points, std::size_t first, std::size
     for (std::size_t k = 0; k < count; ++k)
       out[k] = ((a * from_x[k] + b * from_y[k] + c * from_z[k] + 8192) >> 14) + shift;
   };
-  count = (count + PatchPoints::kBlock - 1) / PatchPoints::kBlock * PatchPoints::kBlock;
-  const std::int16_t *px = &points.x[first], *py = &points.y[first], *pz = &points.z[first];
-  turn(px, py, pz, 0, pose.t[0], x.data());
-  turn(px, py, pz, 3, pose.t[1], y.data());
-  turn(px, py, pz, 6, pose.t[2], z.data());
-  const std::int16_t *qx = &points.nx[first], *qy = &points.ny[first], *qz = &points.nz[first];
-  turn(qx, qy, qz, 0, 0, nx.data());
-  turn(qx, qy, qz, 3, 0, ny.data());
-  turn(qx, qy, qz, 6, 0, nz.data());
+  turn(from.x, from.y, from.z, 0, pose.t[0], x.data());
+  turn(from.x, from.y, from.z, 3, pose.t[1], y.data());
+  turn(from.x, from.y, from.z, 6, pose.t[2], z.data());
+  turn(from.nx, from.ny, from.nz, 0, 0, nx.data());
+  turn(from.nx, from.ny, from.nz, 3, 0, ny.data());
+  turn(from.nx, from.ny, from.nz, 6, 0, nz.data());
   for (std::size_t k = 0; k < count; ++k) {
     const bool facing = faces_camera(point(k), normal(k), kCos75), rim = on_rim(point(k), normal(k));
     side[k] = facing ? Side::facing : rim ? Side::rim : Side::away;

@@ -1,4 +1,4 @@
-// The points of a patch under one pose, many at a time: loops over arrays, of which compilers make vectors.
+// Points under one pose, many at a time: loops over arrays, of which compilers make vectors.
 #pragma once
 
 #include <array>
@@ -15,15 +15,30 @@ enum class Side : std::int32_t {
   facing  ///< faces_camera() within 75°
 };
 
-/// Some points of a patch in the camera frame: the values of FixedPose, one array a coordinate.
+/// Points and normals in arrays, from one of them on.
+struct PointColumns {
+  const std::int16_t *x, *y, *z, *nx, *ny, *nz;
+
+  /// Of the model or of its patches.
+  template <typename Tables>
+  PointColumns(const Tables& tables, std::size_t first) noexcept
+      : x(&tables.x[first]),
+        y(&tables.y[first]),
+        z(&tables.z[first]),
+        nx(&tables.nx[first]),
+        ny(&tables.ny[first]),
+        nz(&tables.nz[first]) {}
+};
+
+/// Some points in the camera frame: the values of FixedPose, one array a coordinate.
 struct PlacedPoints {
   static constexpr std::size_t kMost = 64;
 
   std::array<std::int32_t, kMost> x, y, z, nx, ny, nz;
   std::array<Side, kMost> side;
 
-  /// Places up to kMost points from `first` on, a place in `points`, rounded up to whole blocks.
-  void place(const PatchPoints& points, std::size_t first, std::size_t count, const FixedPose& pose) noexcept;
+  /// The first `count` of the columns, at most kMost; whole blocks (PatchPoints) are the quickest.
+  void place(const PointColumns& from, std::size_t count, const FixedPose& pose) noexcept;
   [[nodiscard]] IntPoint point(std::size_t k) const noexcept { return {x[k], y[k], z[k]}; }
   [[nodiscard]] IntPoint normal(std::size_t k) const noexcept { return {nx[k], ny[k], nz[k]}; }
 };

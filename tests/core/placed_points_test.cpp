@@ -52,7 +52,7 @@ TEST(PlacedPoints, AreWhatThePoseSaysOfEachPoint) {
     for (std::size_t p = 0; p < scene.patches.count; ++p) {
       const std::size_t count = std::min<std::size_t>(points.count[p], PlacedPoints::kMost);
       PlacedPoints placed;
-      placed.place(points, points.begin[p], count, pose);
+      placed.place({points, points.begin[p]}, count, pose);
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t at = points.begin[p] + k;
         const IntPoint point = pose.point(points.x[at], points.y[at], points.z[at]),
