@@ -168,6 +168,15 @@ TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
   std::filesystem::remove(path);
 }
 
+TEST_F(CaptureCommand, ASurfaceThatCannotBeWrittenIsAFailureAndTheModelIsKept) {
+  std::vector<std::string> command = words("simulated:box?frames=8&width=320&height=240", at("box.model"));
+  command.insert(command.end(), {"--ply", "/dev/full"});
+  const Ended ended = run_pliant(command);
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("/dev/full: cannot be written"), std::string::npos) << ended.err;
+  EXPECT_EQ(run_pliant({"model", "info", at("box.model")}).code, 0);
+}
+
 TEST_F(CaptureCommand, AnInterruptKeepsWhatIsThere) {
   const pid_t process = start_pliant(
       words("simulated:box?motion=turned&frames=100000&width=320&height=240", at("box.model")), folder_);
