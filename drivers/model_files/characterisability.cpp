@@ -88,6 +88,7 @@ std::string describe_motions(const FreeMotions& free, const Vector3& middle, dou
     return fmt::format("({:.2f} {:.2f} {:.2f})", d.x() + 0.0, d.y() + 0.0, d.z() + 0.0);
   };
   std::string text;
+  if (free.turns.size() > 1 || free.shifts.size() > 1) return text;  // naming some of them would mislead
   if (free.turns.size() == 1) {
     const auto& [turn, shift] = free.turns.front();
     const Vector3 foot = middle + radius / turn.squaredNorm() * cross(turn, shift);

@@ -74,6 +74,11 @@ TEST(Shape, ASlipAlongAndATurnAreToldApart) {
   EXPECT_TRUE(mentions(pipe, ") m along (0.00 0.00 1.00) and a shift along (0.00 0.00 1.00)\n")) << pipe;
 }
 
+TEST(Shape, OfSeveralMotionsOfAKindNoneIsNamed) {
+  for (const Geometry& g : {shapes::sphere(0.1, 60), shapes::plane(0.3, 0.2, 60)})
+    EXPECT_FALSE(mentions(describe_model(make(g).view()), "not noticed"));
+}
+
 TEST(Shape, ThingsWithEdgesAndKnobsCan) {
   for (const Geometry& g : {shapes::cushion_with_knob(), shapes::box(0.07, 0.09, 0.2),
                             shapes::box(0.03, 0.02, 0.04), shapes::ellipsoid(0.1, 0.08, 0.06, 60)}) {
