@@ -13,7 +13,7 @@ double usual_noise(const SensorDescription& sensor) noexcept {
 }
 
 VolumePlan volume_plan(const CaptureSettings& settings, const SensorDescription& sensor) noexcept {
-  constexpr double kVoxelSigmas = 1.5, kBackSigmas = 4;
+  constexpr double kBackSigmas = 4;
   const double sigma = usual_noise(sensor);
   const double wished = settings.voxel > 0 ? settings.voxel : kVoxelSigmas * sigma;
   const double finest = settings.size / (kMostVoxels - 1);

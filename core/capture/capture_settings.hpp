@@ -48,9 +48,11 @@ struct VolumePlan {
 /// σ of a reading at 0.6 m, the distance at which objects are usually shown, metres.
 [[nodiscard]] double usual_noise(const SensorDescription& sensor) noexcept;
 
-/// Voxels as wide as 1.5 usual_noise(): finer ones would only store noise. Not finer than kMostVoxels allow.
-/// Distances are told up to five voxels before the surface, which is how far alignment looks, and up to three
-/// behind it, at least 4 σ.
+/// Width of a voxel in usual_noise().
+inline constexpr double kVoxelSigmas = 1.5;
+/// Voxels as wide as kVoxelSigmas times usual_noise(): finer ones would only store noise. Not finer than
+/// kMostVoxels allow. Distances are told up to five voxels before the surface, which is how far alignment
+/// looks, and up to three behind it, at least 4 σ.
 [[nodiscard]] VolumePlan volume_plan(const CaptureSettings& settings,
                                      const SensorDescription& sensor) noexcept;
 

@@ -6,11 +6,13 @@
 #include <numeric>
 #include <vector>
 
+#include "core/capture/capture_settings.hpp"
 #include "core/limits.hpp"
 #include "drivers/geometry_files/surface_net.hpp"
 #include "drivers/model_files/mesh.hpp"
 #include "drivers/model_files/mesh_normals.hpp"
 #include "drivers/model_files/mesh_smoothing.hpp"
+#include "drivers/model_files/model_builder.hpp"
 #include "drivers/model_files/surface_sampling.hpp"
 
 namespace pliant {
@@ -93,7 +95,10 @@ double captured_spacing(const Geometry& captured, double sigma) {
   for (const Point3f& p : captured.vertices)
     mesh.vertices.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
   mesh.triangles = captured.triangles;
-  return std::min(4 * sigma, even_spacing(surface_area(mesh), limits::kMaxModelKeypoints));
+  const double area = surface_area(mesh);
+  const double usual = kSamplingShare * even_spacing(area, kUsualPoints);
+  return std::min(
+      {4 * sigma, std::max(usual, kVoxelSigmas * sigma), even_spacing(area, limits::kMaxModelKeypoints)});
 }
 
 }  // namespace pliant

@@ -28,10 +28,11 @@ struct CapturedMeshSettings {
 /// when nothing was captured.
 [[nodiscard]] Geometry captured_mesh(const DistanceVolume& volume, const CapturedMeshSettings& settings);
 
-/// Distance between the points of a model of `captured`, metres. The inlier test allows four σ (`sigma`: of a
-/// reading, metres): denser points say nothing that a reading could tell, and the normals of the picture,
-/// which are taken over one distance, would be noise. A small object's lie as dense as it takes for all
-/// keypoints that a model has room for.
+/// Distance between the points of a model of `captured`, metres: that of the usual number of points, which is
+/// what all the patches need that the warp can have: a limb must be some patches, and enough points to count
+/// as a part. Not more than four σ (`sigma`: of a reading, metres), which the inlier test allows, and not
+/// less than a voxel is wide, between which the surface is but drawn; of a small object as little as it takes
+/// for all keypoints that a model has room for.
 [[nodiscard]] double captured_spacing(const Geometry& captured, double sigma);
 
 }  // namespace pliant

@@ -15,6 +15,9 @@ struct Characterisability {
   double measure = 0;
   double needed = 0;  ///< least measure for the sensor to notice
   ModelHeader::Ambiguity ambiguity = ModelHeader::Ambiguity::none;
+  /// The motions that it does not notice, with their axis or direction in the model's frame; empty where
+  /// there are several of a kind, as of a plane and a sphere.
+  std::string motions;
   std::string reason;  ///< one line; empty when the shape is characterisable
 };
 

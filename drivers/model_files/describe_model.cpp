@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/model_files/characterisability.hpp"
+
 namespace pliant {
 
 const char* describe(ModelHeader::Ambiguity ambiguity) noexcept {
@@ -33,6 +35,16 @@ std::string describe_links(std::span<const Link> links) {
                      1000 * sum / static_cast<double>(links.size()));
 }
 
+/// Which way the model slips, found from its points: a file holds only the kind.
+std::string free_motions_of(const ModelView& model) {
+  OrientedCloud cloud;
+  for (const Point3f& p : model.positions())
+    cloud.points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+  for (const Normal16& n : model.normals()) cloud.normals.emplace_back(Vector3(n.x, n.y, n.z) / 16384.0);
+  const Characterisability shape = characterise(cloud, model.header().spacing);
+  return static_cast<std::uint32_t>(shape.ambiguity) == model.header().ambiguity ? shape.motions : "";
+}
+
 }  // namespace
 
 std::string describe_model(const ModelView& model) {
@@ -55,9 +67,11 @@ std::string describe_model(const ModelView& model) {
   text += fmt::format("material: {:g} (0 stiff, 1 soft)\n", model.material());
   text += fmt::format("surface: {}\n", (h.flags & ModelHeader::kClosedSurface) != 0 ? "closed" : "open");
   if ((h.flags & ModelHeader::kFrontOnly) != 0) text += "back: unknown\n";
-  text += model.characterisable()
-              ? fmt::format("characterisable: yes ({:.2f})\n", h.characterisability)
-              : fmt::format("characterisable: no ({:.2f}): {}\n", h.characterisability, describe(ambiguity));
+  if (model.characterisable())
+    return text + fmt::format("characterisable: yes ({:.2f})\n", h.characterisability);
+  text += fmt::format("characterisable: no ({:.2f}): {}\n", h.characterisability, describe(ambiguity));
+  const std::string motions = free_motions_of(model);
+  if (!motions.empty()) text += fmt::format("not noticed: {}\n", motions);
   return text;
 }
 

@@ -27,18 +27,14 @@ namespace pliant {
 
 namespace {
 
-/// Points that a model gets when they can be chosen freely: fine enough for dents of some spacings, and what
-/// a small processor can follow at the camera's rate.
-constexpr std::size_t kUsualPoints = 8000;
 /// Fewer vertices than this, or gaps wider than this many evenly spread points would leave, make a mesh
 /// coarse.
 constexpr std::size_t kLeastVertices = 2000;
 constexpr std::size_t kLeastEvenPoints = 1500;
 /// Fewer points say nothing about a shape.
 constexpr std::size_t kLeastPoints = 50;
-/// Mean distance to the nearest in a farthest-point sampling that took its points from eight times as many,
-/// as a share of the hexagonal lattice's; and its least distance as a share of its mean.
-constexpr double kSamplingShare = 0.8, kLeastOfMean = 0.87;
+/// Least distance of a farthest-point sampling as a share of its mean.
+constexpr double kLeastOfMean = 0.87;
 
 /// Metres; beyond it floats do not resolve an object.
 constexpr double kFarthestCoordinate = 1e5;

@@ -11,6 +11,13 @@
 
 namespace pliant {
 
+/// Points that a model gets when they can be chosen freely: fine enough for dents of some spacings, and what
+/// a small processor can follow at the camera's rate.
+inline constexpr std::size_t kUsualPoints = 8000;
+/// Mean distance to the nearest in a farthest-point sampling that took its points from eight times as many,
+/// as a share of the hexagonal lattice's.
+inline constexpr double kSamplingShare = 0.8;
+
 struct ModelBuildSettings {
   double metres_per_unit = 1;  ///< of the input's coordinates [1e-6, 1e3]
   double spacing = 0;          ///< wished distance between points, metres; 0: derived from the surface (0, 1]

@@ -135,13 +135,18 @@ class Recording final : public DepthSource {
 }  // namespace
 
 Result<std::unique_ptr<DepthSource>> open_recording(const std::filesystem::path& folder) {
+  constexpr const char* kWhatItIs = "a recording is a folder with camera.toml and depth.txt";
   std::error_code status;
+  if (folder.empty()) return Error{ErrorKind::bad_input, "recording: names no folder; write recording:DIR"};
   if (!std::filesystem::is_directory(folder, status)) {
-    const char* what = std::filesystem::exists(folder, status)
-                           ? "not a folder; a recording is a folder with camera.toml and depth.txt"
-                           : "no such recording";
-    return Error{ErrorKind::bad_input, fmt::format("{}: {}", folder.string(), what)};
+    if (!std::filesystem::exists(folder, status))
+      return Error{ErrorKind::bad_input, fmt::format("{}: no such recording", folder.string())};
+    return Error{ErrorKind::bad_input, fmt::format("{}: not a folder; {}", folder.string(), kWhatItIs)};
   }
+  for (const char* const file : {"camera.toml", "depth.txt"})
+    if (!std::filesystem::exists(folder / file, status))
+      return Error{ErrorKind::bad_input,
+                   fmt::format("{}: holds no {}; {}", folder.string(), file, kWhatItIs)};
   const Result<CameraFile> camera = read_camera(folder / "camera.toml");
   if (!camera) return camera.error();
   Result<std::vector<DepthListEntry>> entries = read_depth_list(folder);

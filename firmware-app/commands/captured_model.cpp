@@ -39,9 +39,10 @@ int write_captured_model(const CapturedModelOptions& options, const ObjectCaptur
   if (mesh.triangles.empty())
     return report(
         {ErrorKind::bad_input, "too little of the object was seen to make a model of; show it longer"});
+  int surface_code = kExitDone;
   if (!options.ply.empty())
     if (const Outcome written = write_ply(options.ply, mesh); !written)
-      print_warning(written.error().message);
+      surface_code = report(written.error());
   ModelBuildSettings settings;
   settings.wound_outward = true;
   settings.spacing = captured_spacing(mesh, options.sigma);
@@ -52,7 +53,8 @@ int write_captured_model(const CapturedModelOptions& options, const ObjectCaptur
   const Result<BuiltModel> built = build_model(mesh, settings);
   if (!built) return report({built.error().kind, "the captured surface " + built.error().message});
   for (const std::string& warning : built->warnings) print_warning(warning);
-  const int code = keep_model(options.output, *built);
+  const int model_code = keep_model(options.output, *built);
+  const int code = model_code != kExitDone ? model_code : surface_code;
   ModelView view;
   if (const ModelFault fault = ModelView::open(built->image, view); fault != ModelFault::none)
     return report({ErrorKind::write, fmt::format("internal error: the new model {}", describe(fault))});

@@ -49,6 +49,12 @@ Result<OpenSource> open_source(const std::string& uri, const SourceOptions& opti
   std::error_code ignored;
   if (!has_scheme(uri) && std::filesystem::is_directory(uri, ignored))
     return Error{ErrorKind::bad_input, fmt::format("source '{0}' has no scheme; write recording:{0}", uri)};
+  if (!has_scheme(uri) && std::filesystem::is_regular_file(uri, ignored))
+    return Error{
+        ErrorKind::bad_input,
+        fmt::format("source '{}' is a file without a scheme; write oni:FILE.oni or lcmlog:FILE of what a "
+                    "sensor saw; of a mesh or cloud, 'pliant model build' makes a model",
+                    uri)};
   return Error{ErrorKind::bad_input, fmt::format("unknown source '{}'; there are recording:DIR, {} and {}",
                                                  uri, kLiveSources, kKnown)};
 }

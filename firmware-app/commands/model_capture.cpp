@@ -2,12 +2,14 @@
 // which it is carried; or single views from files do.
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <system_error>
 #include <utility>
 
 #include "core/capture/object_capture.hpp"
+#include "drivers/geometry_files/atomic_file.hpp"
 #include "drivers/model_files/model_builder.hpp"
 #include "drivers/recording/pose_list.hpp"
 #include "drivers/view_files/view_files.hpp"
@@ -35,9 +37,12 @@ struct CaptureOptions {
   std::vector<StampedPose> known;  ///< what --poses names
 };
 
-constexpr double megabytes(std::size_t bytes) {
+constexpr double megabytes(std::uintmax_t bytes) {
   return static_cast<double>(bytes) / 1e6;
 }
+
+/// Of a model or a surface, the most that is written.
+constexpr std::uintmax_t kLeastRoom = 4'000'000;
 
 /// How the pictures ended.
 struct Taken {
@@ -164,12 +169,26 @@ std::string refused_words(const CaptureOptions& options) {
 }
 
 /// A place that cannot be written to shows before the object was turned for half a minute, not after.
-Outcome check_folder(const std::string& file) {
+Outcome check_place(const std::string& file, const char* option) {
+  if (file.empty())
+    return Error{ErrorKind::bad_input, fmt::format("{} names no file; name one to write to", option)};
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   std::error_code fault;
-  if (folder.empty() || std::filesystem::is_directory(folder, fault)) return success();
-  return Error{ErrorKind::write, fmt::format("{}: cannot be written: there is no folder {}; make it first",
-                                             file, folder.string())};
+  if (!folder.empty() && !std::filesystem::is_directory(folder, fault))
+    return Error{ErrorKind::write, fmt::format("{}: cannot be written: there is no folder {}; make it first",
+                                               file, folder.string())};
+  AtomicFile probe;  // goes again when it is not committed
+  if (Outcome opened = probe.open(file.c_str()); !opened) return opened;
+  if (!std::filesystem::is_regular_file(file, fault) && std::filesystem::exists(file, fault))
+    return success();
+  const std::filesystem::space_info space =
+      std::filesystem::space(folder.empty() ? std::filesystem::path(".") : folder, fault);
+  if (fault || space.available >= kLeastRoom) return success();
+  return Error{
+      ErrorKind::write,
+      fmt::format(
+          "{}: {:.1f} MB are free there and up to {:.0f} MB needed; free some space, or write elsewhere",
+          file, megabytes(space.available), megabytes(kLeastRoom))};
 }
 
 int capture(const CaptureOptions& given) {
@@ -177,8 +196,11 @@ int capture(const CaptureOptions& given) {
   CaptureOptions options = given;
   if (const std::string fault = refused_words(options); !fault.empty())
     return report({ErrorKind::bad_input, fault});
-  for (const std::string& file : {options.output, options.ply})
-    if (const Outcome possible = check_folder(file); !possible) return report(possible.error());
+  if (const Outcome possible = check_place(options.output, "--output"); !possible)
+    return report(possible.error());
+  if (!options.ply.empty())
+    if (const Outcome possible = check_place(options.ply, "--ply"); !possible)
+      return report(possible.error());
   options.capture.separate_views = !options.views.empty();
   if (options.at.size() == 2) {
     options.capture.at_u = options.at[0];

@@ -4,7 +4,9 @@
 #include <cstring>
 
 #include "core/capture/integrate.hpp"
+#include "drivers/model_files/model_builder.hpp"
 #include "tests/capture/capture_run.hpp"
+#include "tests/capture/other_objects.hpp"
 #include "tests/capture/scene.hpp"
 
 namespace pliant::test {
@@ -113,6 +115,32 @@ TEST_F(Volume, TheMeanOfManyViewsIsExactToAFractionOfTheirUnit) {
   IntPoint gradient;
   ASSERT_TRUE(volume_.sample(at(0, 0, 0), distance, gradient));
   EXPECT_NEAR(distance / 256.0, 0.5, 0.1);  // millimetres
+}
+
+TEST(CapturedSpacing, ATabletopObjectGetsAllPatchesThatTheWarpCanHave) {
+  // With fewer, a limb of it is one patch, and too few points to count as a part that moves.
+  ModelBuildSettings settings;
+  settings.wound_outward = true;
+  settings.spacing = captured_spacing(ball(), usual_noise({}));
+  const Result<BuiltModel> built = build_model(ball(), settings);
+  ASSERT_TRUE(built) << built.error().message;
+  ModelView view;
+  ASSERT_EQ(ModelView::open(built->image, view), ModelFault::none);
+  EXPECT_EQ(view.patches().size(), limits::kMaxPatches);
+  EXPECT_LT(view.size(), kUsualPoints * 3 / 2);
+}
+
+TEST(CapturedSpacing, FollowsTheSensorWhereTheObjectIsLargeOrSmall) {
+  const double sigma = usual_noise({});
+  const auto spacing_of = [&](double scale) {
+    Geometry object = ball();
+    for (Point3f& p : object.vertices)
+      p = {static_cast<float>(scale) * p.x, static_cast<float>(scale) * p.y, static_cast<float>(scale) * p.z};
+    return captured_spacing(object, sigma);
+  };
+  EXPECT_DOUBLE_EQ(spacing_of(4), 4 * sigma);
+  EXPECT_DOUBLE_EQ(spacing_of(0.6), kVoxelSigmas * sigma) << "the surface is not known finer";
+  EXPECT_LT(spacing_of(0.2), kVoxelSigmas * sigma) << "detection needs its keypoints";
 }
 
 }  // namespace

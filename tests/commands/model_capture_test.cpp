@@ -144,6 +144,20 @@ TEST_F(CaptureCommand, AFolderThatIsMissingIsToldBeforeAnythingIsTurned) {
   expect_refused(run_pliant(command), 3, {"none/box.ply", "make it first"});
 }
 
+TEST_F(CaptureCommand, AnOutputThatIsNoFileIsToldBeforeAnythingIsTurned) {
+  expect_refused(run_pliant(words(kTurned, "")), 2, {"--output names no file"});
+  const Ended folder = run_pliant(words(kTurned, folder_));
+  expect_refused(folder, 3, {"name a file, not a folder"});
+  EXPECT_EQ(folder.out, "");
+  // Nothing is left behind by looking, and a model that is there stays until the new one is whole.
+  write_file(at("box.model"), "old");
+  std::vector<std::string> command = words("recording:none", at("box.model"));
+  EXPECT_EQ(run_pliant(command).code, 2);
+  EXPECT_EQ(read_file(at("box.model")), "old");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
 TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
   const Ended ended = run_pliant(words("simulated:box?frames=8&width=320&height=240", "/dev/full"));
   EXPECT_EQ(ended.code, 3);
@@ -152,6 +166,15 @@ TEST_F(CaptureCommand, ADiskThatIsFullLosesNothing) {
   const std::string path = ended.err.substr(kept + 8, ended.err.find('\n', kept) - kept - 8);
   EXPECT_EQ(run_pliant({"model", "info", path}).code, 0) << path;
   std::filesystem::remove(path);
+}
+
+TEST_F(CaptureCommand, ASurfaceThatCannotBeWrittenIsAFailureAndTheModelIsKept) {
+  std::vector<std::string> command = words("simulated:box?frames=8&width=320&height=240", at("box.model"));
+  command.insert(command.end(), {"--ply", "/dev/full"});
+  const Ended ended = run_pliant(command);
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("/dev/full: cannot be written"), std::string::npos) << ended.err;
+  EXPECT_EQ(run_pliant({"model", "info", at("box.model")}).code, 0);
 }
 
 TEST_F(CaptureCommand, AnInterruptKeepsWhatIsThere) {
@@ -188,6 +211,12 @@ TEST_F(CaptureCommand, BadWordsAreRefused) {
   command.insert(command.end(), {"--at", "700", "10"});
   expect_refused(run_pliant(command), 2, {"--at 700 10", "320x240"});
   expect_refused(run_pliant(words("recording:none", at("m"))), 2, {"none"});
+  expect_refused(run_pliant(words("recording:", at("m"))), 2,
+                 {"recording: names no folder", "recording:DIR"});
+  expect_refused(run_pliant(words("recording:" + folder_.string(), at("m"))), 2,
+                 {"holds no camera.toml", "a recording is"});
+  write_file(at("mesh.ply"), "ply\n");
+  expect_refused(run_pliant(words(at("mesh.ply"), at("m"))), 2, {"mesh.ply", "'pliant model build'"});
   expect_refused(run_pliant({"model", "capture", "--source", kTurned}), 2, {"--output"});
   command = words(kTurned, at("m"));
   command[7] = std::string("7");

@@ -1,4 +1,6 @@
 // Which shapes a depth camera can localise.
+#include <cstdio>
+
 #include "drivers/model_files/describe_model.hpp"
 #include "tests/model_files/built.hpp"
 #include "tests/model_files/shapes.hpp"
@@ -40,6 +42,41 @@ TEST(Shape, RoundThingsCannotBeLocalised) {
   expect_ambiguous(shapes::torus(0.1, 0.03, 40), Ambiguity::rotation, "about an axis");
   expect_ambiguous(shapes::ellipsoid(0.1, 0.1, 0.06, 60), Ambiguity::rotation, "about an axis");
   expect_ambiguous(shapes::cylinder(0.05, 0.2, 40, false), Ambiguity::translation, "shifted along itself");
+}
+
+TEST(Shape, WhatIsSeenOfARoundThingFromOneSideTurnsAboutItsAxis) {
+  for (const double degrees : {180.0, 140.0, 100.0}) {
+    SCOPED_TRACE(degrees);
+    const Geometry side = shapes::with_noise(shapes::side_of_bottle(degrees, 80), 0.0003);
+    expect_ambiguous(side, Ambiguity::rotation, "about an axis");
+    const std::string text = describe_model(make(side).view());
+    const std::size_t at = text.find("not noticed: a turn about the axis through (");
+    ASSERT_NE(at, std::string::npos) << text;
+    double x = 0, y = 0, z = 0, along[3] = {0, 0, 0};
+    ASSERT_EQ(std::sscanf(text.c_str() + at,
+                          "not noticed: a turn about the axis through (%lf %lf %lf) m along (%lf %lf %lf)",
+                          &x, &y, &z, &along[0], &along[1], &along[2]),
+              6)
+        << text;
+    EXPECT_NEAR(x, 0.1, 0.004);
+    EXPECT_NEAR(y, 0.2, 0.004);
+    EXPECT_GT(along[2], 0.99);
+  }
+}
+
+TEST(Shape, ASlipAlongAndATurnAreToldApart) {
+  expect_ambiguous(shapes::with_noise(shapes::angle_bar(80), 0.0003), Ambiguity::translation,
+                   "shifted along itself");
+  EXPECT_TRUE(mentions(describe_model(make(shapes::angle_bar(80)).view()),
+                       "not noticed: a shift along (0.00 1.00 0.00)\n"));
+  const std::string pipe = describe_model(make(shapes::cylinder(0.05, 0.2, 40, false)).view());
+  EXPECT_TRUE(mentions(pipe, "not noticed: a turn about the axis through (")) << pipe;
+  EXPECT_TRUE(mentions(pipe, ") m along (0.00 0.00 1.00) and a shift along (0.00 0.00 1.00)\n")) << pipe;
+}
+
+TEST(Shape, OfSeveralMotionsOfAKindNoneIsNamed) {
+  for (const Geometry& g : {shapes::sphere(0.1, 60), shapes::plane(0.3, 0.2, 60)})
+    EXPECT_FALSE(mentions(describe_model(make(g).view()), "not noticed"));
 }
 
 TEST(Shape, ThingsWithEdgesAndKnobsCan) {

@@ -73,6 +73,21 @@ Geometry cylinder(double radius, double height, std::size_t rows, bool closed) {
   return joined(wall, joined(cap(0.5 * height, 1), cap(-0.5 * height, -1)));
 }
 
+Geometry side_of_bottle(double degrees, std::size_t rows) {
+  return patch(rows, rows, [&](double s, double t) {
+    const double angle = degrees * kPi / 180 * (s - 0.5);
+    const double narrowing = std::clamp((t - 0.6) / 0.2, 0.0, 1.0);
+    const double radius = 0.045 - 0.03 * (0.5 - 0.5 * std::cos(kPi * narrowing));
+    return Vector3(0.1 + radius * std::cos(angle), 0.2 + radius * std::sin(angle), 0.26 * t);
+  });
+}
+
+Geometry angle_bar(std::size_t rows) {
+  return patch(rows, rows, [&](double s, double t) {
+    return Vector3(s < 0.5 ? 0.1 * (1 - 2 * s) : 0, 0.2 * t, s < 0.5 ? 0 : 0.1 * (2 * s - 1));
+  });
+}
+
 Geometry torus(double radius, double tube, std::size_t rows) {
   return patch(3 * rows, rows, [&](double s, double t) {
     const double around = 2 * kPi * s, across = 2 * kPi * t;

@@ -151,7 +151,8 @@ TEST_F(RecordingTest, AllFramesBadStillEnds) {
 }
 
 TEST_F(RecordingTest, WhatIsMissingOrMalformedIsNamed) {
-  EXPECT_EQ(fault(), (folder_ / "depth.txt").string() + ": No such file or directory");
+  EXPECT_EQ(fault(), folder_.string() +
+                         ": holds no depth.txt; a recording is a folder with camera.toml and depth.txt");
   put("depth.txt", "0 depth/0.png\nnonsense\n");
   EXPECT_EQ(fault().rfind((folder_ / "depth.txt").string() + ":2: ", 0), 0U) << fault();
   put("depth.txt", "");
@@ -162,7 +163,8 @@ TEST_F(RecordingTest, WhatIsMissingOrMalformedIsNamed) {
             std::string::npos)
       << fault();
   fs::remove(folder_ / "camera.toml");
-  EXPECT_EQ(fault(), (folder_ / "camera.toml").string() + ": No such file or directory");
+  EXPECT_EQ(fault(), folder_.string() +
+                         ": holds no camera.toml; a recording is a folder with camera.toml and depth.txt");
   fs::remove_all(folder_);
   EXPECT_EQ(fault(), folder_.string() + ": no such recording");
   std::ofstream(folder_).flush();
