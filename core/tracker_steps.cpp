@@ -144,7 +144,8 @@ void regroup_outliers(TrackerState& s) noexcept {
 }
 
 void match_deformed(TrackerState& s) noexcept {
-  search_deformed(s.tables, s.surface, s.projector, 2 * inlier_limit(s), s.taken_pixels, s.points);
+  search_deformed(s.tables, s.surface, s.projector, kSearchLimits * inlier_limit(s), s.taken_pixels,
+                  s.points);
 }
 
 void weigh_strain(TrackerState& s) noexcept {

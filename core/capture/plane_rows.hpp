@@ -16,6 +16,19 @@ struct PlaneRow {
   std::int32_t residual;    ///< distance of the plane from the point along the normal, 1/256 mm
 };
 
+/// `normal` of the plane, `own` of the view: as they are computed, in Q14.
+[[nodiscard]] inline PlaneRow plane_row(const IntPoint& point, const IntPoint& normal, const IntPoint& own,
+                                        std::int32_t residual) noexcept {
+  return {point,
+          static_cast<std::int16_t>(normal.x),
+          static_cast<std::int16_t>(normal.y),
+          static_cast<std::int16_t>(normal.z),
+          static_cast<std::int16_t>(own.x),
+          static_cast<std::int16_t>(own.y),
+          static_cast<std::int16_t>(own.z),
+          residual};
+}
+
 struct RobustMoments {
   PlaneMoments moments;    ///< about `centre`
   IntPoint centre;         ///< 1/16 mm

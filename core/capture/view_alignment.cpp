@@ -46,14 +46,7 @@ struct Counts {
       ++counts.against;
       continue;
     }
-    rows[counts.rows++] = {m,
-                           static_cast<std::int16_t>(gradient.x),
-                           static_cast<std::int16_t>(gradient.y),
-                           static_cast<std::int16_t>(gradient.z),
-                           static_cast<std::int16_t>(own.x),
-                           static_cast<std::int16_t>(own.y),
-                           static_cast<std::int16_t>(own.z),
-                           -distance};
+    rows[counts.rows++] = plane_row(m, gradient, own, -distance);
   }
   return counts;
 }
@@ -150,14 +143,7 @@ std::size_t pair_rows(std::span<const ViewPoint> points, const RigidTransform& p
     if (std::abs(q.z - p.z) > gate) continue;
     const IntPoint m = to_model.point(point.x, point.y, point.z);
     const IntPoint direction = to_model.direction(point.nx, point.ny, point.nz);
-    rows[count++] = {m,
-                     static_cast<std::int16_t>(direction.x),
-                     static_cast<std::int16_t>(direction.y),
-                     static_cast<std::int16_t>(direction.z),
-                     static_cast<std::int16_t>(direction.x),
-                     static_cast<std::int16_t>(direction.y),
-                     static_cast<std::int16_t>(direction.z),
-                     plane_distance(q, p, n)};
+    rows[count++] = plane_row(m, direction, direction, plane_distance(q, p, n));
     if (count == rows.size()) break;
   }
   return count;

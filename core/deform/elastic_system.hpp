@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/deform/symmetric6.hpp"
 #include "core/track/patches.hpp"
@@ -19,6 +20,25 @@ struct ElasticLink {
   double bend = 0;       ///< of the angle between them, in weighted readings times metres squared
   Vector3 arm_a, arm_b;  ///< from the patches' centres to where each puts the point, camera frame, metres
 };
+
+/// Where two patches meet, or are tied together: a link without stiffness yet, and the gap that it closes.
+struct PatchMeeting {
+  ElasticLink link;
+  Vector3 gap;  ///< from where b puts the shared point to where a does
+};
+
+/// `pose`: of each patch; `point`: what a and b share, model frame, metres.
+[[nodiscard]] inline PatchMeeting meeting_of(const PatchTables& patches, std::span<const RigidTransform> pose,
+                                             std::uint8_t a, std::uint8_t b, const Vector3& point) noexcept {
+  const Vector3 at_a = pose[a] * point, at_b = pose[b] * point;
+  PatchMeeting meeting;
+  meeting.link.a = a;
+  meeting.link.b = b;
+  meeting.link.arm_a = at_a - pose[a] * patches.centres[a];
+  meeting.link.arm_b = at_b - pose[b] * patches.centres[b];
+  meeting.gap = at_a - at_b;
+  return meeting;
+}
 
 /// Solved by conjugate gradients with a bounded number of iterations, preconditioned by the 6×6 blocks of the
 /// diagonal: a bounded number of operations in a fixed order.

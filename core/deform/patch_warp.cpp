@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/deform/body_tie.hpp"
 #include "core/deform/patch_readings.hpp"
 #include "core/deform/strain.hpp"
 #include "core/track/aside.hpp"
@@ -43,12 +44,6 @@ void find_homes(const PatchTables& patches, const PointState& points, PatchWarp&
         static_cast<std::int8_t>(std::max_element(counts[p].begin(), counts[p].end()) - counts[p].begin());
 }
 
-/// Weight of a spring that gives way beyond `scale`.
-double giving_way(double square, double scale) noexcept {
-  const double w = scale * scale / (scale * scale + square);
-  return w * w;
-}
-
 void add_anchor(const PatchTables& patches, const RigidTransform& region, double limit, std::size_t p,
                 PatchWarp& warp) noexcept {
   const RigidTransform& pose = warp.pose[p];
@@ -69,26 +64,17 @@ void add_borders(const PatchTables& patches, const Material& material, PatchWarp
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
     if (warp.system.holds(border.a) && warp.system.holds(border.b)) continue;
-    const RigidTransform &a = warp.pose[border.a], &b = warp.pose[border.b];
-    const Vector3 at_a = a * border.centre, at_b = b * border.centre;
-    const Vector3 turn = turn_between(a.rotation, b.rotation);
-    ElasticLink link;
-    link.a = border.a;
-    link.b = border.b;
-    link.stretch = material.stretch_stiffness(border);
-    link.bend = material.bend_stiffness(border) * giving_way(turn.squaredNorm(), kFreeTurn);
+    const Vector3 turn = turn_between(warp.pose[border.a].rotation, warp.pose[border.b].rotation);
+    PatchMeeting meeting = meeting_of(patches, warp.pose, border.a, border.b, border.centre);
+    meeting.link.stretch = material.stretch_stiffness(border);
+    meeting.link.bend = material.bend_stiffness(border) * giving_way(turn.squaredNorm(), kFreeTurn);
     if (warp.home[border.a] != warp.home[border.b]) {
-      link.stretch *= kJointShare;
-      link.bend *= kJointShare;
+      meeting.link.stretch *= kJointShare;
+      meeting.link.bend *= kJointShare;
     }
-    link.arm_a = at_a - a * patches.centres[border.a];
-    link.arm_b = at_b - b * patches.centres[border.b];
-    warp.system.add_link(link, at_a - at_b, turn);
+    warp.system.add_link(meeting.link, meeting.gap, turn);
   }
 }
-
-/// A patch with less than this share of the readings that it could have, two or three of them, is not seen.
-constexpr double kFewReadings = 0.1;
 
 /// Across the body, what is seen to be off its region takes along what is not seen. What is seen where its
 /// region is says no more than the region's own pull does; between two that are seen, or two of different
@@ -107,17 +93,9 @@ void add_ties(const PatchTables& patches, const Material& material, PatchWarp& w
   for (std::size_t k = 0; k < patches.tie_count; ++k) {
     const PatchTie& tie = patches.ties[k];
     if (!takes_along(patches, warp, tie)) continue;
-    const RigidTransform &a = warp.pose[tie.a], &b = warp.pose[tie.b];
-    const Vector3 at_a = a * tie.middle, at_b = b * tie.middle;
-    ElasticLink link;
-    link.a = tie.a;
-    link.b = tie.b;
     const double give = material.strain * tie.length;
-    link.stretch = tie.looks * material.noise * material.noise / (give * give) *
-                   giving_way((at_a - at_b).squaredNorm(), give);
-    link.arm_a = at_a - a * patches.centres[tie.a];
-    link.arm_b = at_b - b * patches.centres[tie.b];
-    warp.system.add_link(link, at_a - at_b, Vector3::Zero());
+    const double stiffness = tie.looks * material.noise * material.noise / (give * give);
+    add_tie(patches, tie, warp.pose, stiffness, give, warp.system);
   }
 }
 

@@ -6,6 +6,9 @@
 
 namespace pliant {
 
+/// How far from a deformed point its reading may lie, in inlier limits.
+constexpr std::int32_t kSearchLimits = 2;
+
 /// Sets `match` and `residual` of the points labelled deformed that have no match: the
 /// nearest reading within `radius` (1/16 mm) of their position that no other point matched. Points without
 /// one stay. `taken`: one bit a pixel of the picture, scratch.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/deform/body_tie.hpp"
 #include "core/detect/fast_transform.hpp"
 #include "core/registration/chain_measures.hpp"
 #include "core/registration/warp_readings.hpp"
@@ -14,9 +15,6 @@ namespace {
 constexpr double kFirstGate = 0.25, kLastSpacings = 2.5;  // of the model's radius; of the spacing
 constexpr double kHold = 1.0;  // of a patch's points: what its region's pull is worth where it explains it
 
-/// A patch with fewer readings than this share of its points is not seen.
-constexpr double kFewReadings = 0.1;
-
 /// Across the body, what the scene shows takes along what it does not, up to the strain that the material
 /// stands, as the tracker's warp does. `stiffness`: of a look one metre long.
 void add_ties(Warp& w, double stiffness, double strain) noexcept {
@@ -27,17 +25,8 @@ void add_ties(Warp& w, double stiffness, double strain) noexcept {
   for (std::size_t k = 0; k < patches.tie_count; ++k) {
     const PatchTie& tie = patches.ties[k];
     if (is_seen(tie.a) == is_seen(tie.b)) continue;
-    const RigidTransform &a = w.room.pose[tie.a], &b = w.room.pose[tie.b];
-    const Vector3 at_a = a * tie.middle, at_b = b * tie.middle;
-    const double give = strain * tie.length, square = (at_a - at_b).squaredNorm();
-    const double left = give * give / (give * give + square);
-    ElasticLink link;
-    link.a = tie.a;
-    link.b = tie.b;
-    link.stretch = tie.looks * stiffness / (tie.length * tie.length) * left * left;
-    link.arm_a = at_a - a * patches.centres[tie.a];
-    link.arm_b = at_b - b * patches.centres[tie.b];
-    w.room.system.add_link(link, at_a - at_b, Vector3::Zero());
+    add_tie(patches, tie, w.room.pose, tie.looks * stiffness / (tie.length * tie.length), strain * tie.length,
+            w.room.system);
   }
 }
 
@@ -58,16 +47,11 @@ void add_springs(Warp& w, double stretch, double bend) noexcept {
   for (std::size_t k = 0; k < patches.border_count; ++k) {
     const PatchBorder& border = patches.borders[k];
     if (w.room.rigid[border.a] && w.room.rigid[border.b]) continue;
-    const RigidTransform &a = w.room.pose[border.a], &b = w.room.pose[border.b];
-    const Vector3 at_a = a * border.centre, at_b = b * border.centre;
-    ElasticLink link;
-    link.a = border.a;
-    link.b = border.b;
-    link.stretch = stretch * border.edges;
-    link.bend = bend * border.edges;
-    link.arm_a = at_a - a * patches.centres[border.a];
-    link.arm_b = at_b - b * patches.centres[border.b];
-    w.room.system.add_link(link, at_a - at_b, turn_between(a.rotation, b.rotation));
+    PatchMeeting meeting = meeting_of(patches, w.room.pose, border.a, border.b, border.centre);
+    meeting.link.stretch = stretch * border.edges;
+    meeting.link.bend = bend * border.edges;
+    w.room.system.add_link(meeting.link, meeting.gap,
+                           turn_between(w.room.pose[border.a].rotation, w.room.pose[border.b].rotation));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/deform/radius_search.hpp"
 #include "core/fixed/integer_root.hpp"
 #include "core/track/pose_lanes.hpp"
 #include "core/track/sight.hpp"
@@ -115,10 +116,6 @@ IntPoint warped_by(const WarpLanes& lanes, const LabelContext& context, std::siz
   return sum.over(PointBlend::kShift);
 }
 
-/// What left its region and has no reading where the warp puts it, beside an outline most often, is matched
-/// by the radius search of deformed points: to the nearest reading within so many inlier limits.
-constexpr std::int32_t kBesideLimits = 2;
-
 /// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
 /// inlier limit, 3 σ or more, put it off its region, which has it at `rigid`.
 Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sighting& sighting,
@@ -144,9 +141,10 @@ Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sight
   const FixedPose& own = context.warp.fixed[context.patches.patch_of[i]];
   Sighting::Look at_warp = sighting.look(
       verdict.warped, own.direction(context.model.nx[i], context.model.ny[i], context.model.nz[i]));
+  // Beside an outline most often: it is matched by the radius search of deformed points.
   if (apart && at_warp.sight == Sight::none && at_home.sight != Sight::agrees &&
       at_home.sight != Sight::behind)
-    (void)sighting.look_beside(kBesideLimits * context.tolerance.deformed(verdict.rigid.z), at_warp);
+    (void)sighting.look_beside(kSearchLimits * context.tolerance.deformed(verdict.rigid.z), at_warp);
   verdict.doubtful = at_home.sight == Sight::agrees;
   verdict.turned = at_home.sight == Sight::none && !apart && at_warp.sight == Sight::agrees;
   verdict.off = (at_warp.sight == Sight::agrees && !verdict.turned) || at_home.sight == Sight::in_front;

@@ -86,12 +86,7 @@ std::vector<BodyLink> body_links(const NetworkInput& input, std::span<const std:
                      {middle.x(), middle.y(), middle.z()},
                      std::max((b - a).norm(), input.spacing)});
   }
-  if (links.size() <= limits::kMaxBodyLinks) return links;
-  std::stable_sort(links.begin(), links.end(),
-                   [](const BodyLink& x, const BodyLink& y) { return x.looks > y.looks; });
-  links.resize(limits::kMaxBodyLinks);
-  std::sort(links.begin(), links.end(),
-            [](const BodyLink& x, const BodyLink& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+  keep_strongest(links, limits::kMaxBodyLinks, &BodyLink::looks);
   return links;
 }
 

@@ -94,13 +94,7 @@ std::vector<SurfaceLink> surface_links(const NetworkInput& input, const SpringNe
     links.push_back(
         {ends.first, ends.second, 0, edges, place_of(sum / edges), std::max(apart, input.spacing)});
   }
-  if (links.size() <= limits::kMaxBorders) return links;
-  std::stable_sort(links.begin(), links.end(),
-                   [](const SurfaceLink& x, const SurfaceLink& y) { return x.edges > y.edges; });
-  links.resize(limits::kMaxBorders);
-  std::sort(links.begin(), links.end(), [](const SurfaceLink& x, const SurfaceLink& y) {
-    return std::pair(x.a, x.b) < std::pair(y.a, y.b);
-  });
+  keep_strongest(links, limits::kMaxBorders, &SurfaceLink::edges);
   return links;
 }
 

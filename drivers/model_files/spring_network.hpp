@@ -1,8 +1,10 @@
 // The springs of a model: the surface in patches, and what holds them together.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/model/model_view.hpp"
@@ -27,6 +29,18 @@ struct SpringNetwork {
   std::vector<SurfaceLink> surface_links;
   std::vector<BodyLink> body_links;
 };
+
+/// Leaves the `most` links with the highest `strength` out of those in order of the patches that they join,
+/// in that order; of equals the first.
+template <typename Link>
+void keep_strongest(std::vector<Link>& links, std::size_t most, std::uint32_t Link::*strength) {
+  if (links.size() <= most) return;
+  std::stable_sort(links.begin(), links.end(),
+                   [&](const Link& x, const Link& y) { return x.*strength > y.*strength; });
+  links.resize(most);
+  std::sort(links.begin(), links.end(),
+            [](const Link& x, const Link& y) { return std::pair(x.a, x.b) < std::pair(y.a, y.b); });
+}
 
 /// Every point belongs to the patch of the seed that is nearest along the neighbour graph; the seeds are the
 /// first points of the model, a uniform sampling.

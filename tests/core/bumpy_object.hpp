@@ -12,6 +12,7 @@
 
 #include <Eigen/LU>
 
+#include "core/camera/depth_frame.hpp"
 #include "core/camera/intrinsics.hpp"
 #include "core/detect/shot.hpp"
 #include "core/memory/row_major.hpp"
@@ -210,6 +211,11 @@ inline const ModelView& bumpy_model() {
   return model.view();
 }
 
+/// 320×240, 59° wide, millimetres.
+inline Intrinsics small_camera() {
+  return {320, 240, 285, 285, 160, 120, 1000};
+}
+
 /// A depth picture in millimetres of clouds before a wall at `wall` metres: points splatted over `splat`
 /// pixels.
 inline std::vector<std::uint16_t> depth_picture(const Intrinsics& camera, const TestCloud& cloud, double wall,
@@ -234,6 +240,15 @@ inline std::vector<std::uint16_t> depth_picture(const Intrinsics& camera, const 
   for (const double d : z)
     picture.push_back(static_cast<std::uint16_t>(std::lround(1000 * (d + noise * spread(random)))));
   return picture;
+}
+
+/// The picture as a frame; it must outlive it.
+inline DepthFrame frame_of(const std::vector<std::uint16_t>& picture, const Intrinsics& camera) {
+  DepthFrame frame;
+  frame.depth = picture.data();
+  frame.width = frame.stride = camera.width;
+  frame.height = camera.height;
+  return frame;
 }
 
 }  // namespace pliant::testing

@@ -9,20 +9,12 @@ namespace pliant {
 namespace {
 
 using testing::AlignedBlock;
+using testing::small_camera;
 using testing::TestCloud;
 
-Intrinsics camera() {
-  Intrinsics c;
-  c.width = 320;
-  c.height = 240;
-  c.fx = c.fy = 285;
-  c.cx = 160;
-  c.cy = 120;
-  return c;
-}
-
 struct DetectorFixture {
-  explicit DetectorFixture(const Intrinsics& c = camera(), const ModelView& model = testing::bumpy_model())
+  explicit DetectorFixture(const Intrinsics& c = small_camera(),
+                           const ModelView& model = testing::bumpy_model())
       : block(0) {
     Workspace measure;
     surface.lay_out(measure, c);
@@ -36,12 +28,8 @@ struct DetectorFixture {
     surface.start(c, SensorDescription());
     detector.start(model, c, SensorDescription(), Kernels::automatic);
   }
-  void show(const std::vector<std::uint16_t>& picture, const Intrinsics& c = camera()) {
-    DepthFrame frame;
-    frame.depth = picture.data();
-    frame.width = frame.stride = c.width;
-    frame.height = c.height;
-    surface.build(frame, {0, 0, c.width, c.height});
+  void show(const std::vector<std::uint16_t>& picture, const Intrinsics& c = small_camera()) {
+    surface.build(testing::frame_of(picture, c), {0, 0, c.width, c.height});
   }
   DetectState run(std::int64_t budget = 1000000) {
     int steps = 0;
@@ -62,7 +50,7 @@ std::vector<std::uint16_t> scene(const RigidTransform& pose, unsigned seed = 1) 
     cloud.positions.push_back(testing::point3f(Vector3(-0.25, 0.1, 0.8) + 0.08 * d));
     cloud.normals.push_back(testing::normal16(d));
   }
-  return testing::depth_picture(camera(), cloud, 1.2, 0, 0.0012, seed);
+  return testing::depth_picture(small_camera(), cloud, 1.2, 0, 0.0012, seed);
 }
 
 TEST(FrameDetector, FindsTheObjectFromManySides) {
@@ -104,7 +92,7 @@ TEST(FrameDetector, ABallOfTheObjectsSizeIsNotTheObject) {
       ball.positions.push_back(testing::point3f(Vector3(0.05, -0.02, 0.75) + radius * d));
       ball.normals.push_back(testing::normal16(d));
     }
-    fixture.show(testing::depth_picture(camera(), ball, 1.2, 1, 0.0012, static_cast<unsigned>(k)));
+    fixture.show(testing::depth_picture(small_camera(), ball, 1.2, 1, 0.0012, static_cast<unsigned>(k)));
     fixture.detector.begin(fixture.surface);
     EXPECT_EQ(fixture.run(), DetectState::nothing) << radius;
   }
@@ -158,7 +146,7 @@ TEST(FrameDetector, AHintIsTriedFirstAndAWrongOneDoesNoHarm) {
 
 TEST(FrameDetector, WorksOnPicturesOfOtherSizes) {
   for (const int factor : {2, 4}) {
-    Intrinsics c = camera();
+    Intrinsics c = small_camera();
     c.width *= factor;
     c.height *= factor;
     c.fx *= factor;
@@ -182,8 +170,8 @@ TEST(Seam, TellsAnObjectInTheOpenFromOneBuriedInAWall) {
   DepthSnapshot snapshot;
   AlignedBlock block(1 << 20);
   Workspace workspace(block.span());
-  snapshot.lay_out(workspace, camera());
-  snapshot.start(camera(), SensorDescription());
+  snapshot.lay_out(workspace, small_camera());
+  snapshot.start(small_camera(), SensorDescription());
   snapshot.take(fixture.surface);
   snapshot.compute_normals(0, snapshot.lattice_height(), 0.01);
   EXPECT_LT(seam_evidence(testing::bumpy_model(), snapshot, pose, 600, 0.004).share(), 0.1);

@@ -118,19 +118,10 @@ testing::TestCloud box(int side, double bulge) {
 
 /// How a plain body and the model explain the picture of a true box.
 PlainBodyFit fit_to_box(const testing::TestCloud& cloud) {
-  Intrinsics camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 285;
-  camera.cx = 160;
-  camera.cy = 120;
+  const Intrinsics camera = testing::small_camera();
   const RigidTransform pose = testing::test_pose(0.9, Vector3(1, 0.7, 0.2), Vector3(0.02, -0.01, 0.7));
   const std::vector<std::uint16_t> picture =
       testing::depth_picture(camera, testing::moved(box(150, 0), pose), 1.2, 1, 0.0012);
-  DepthFrame frame;
-  frame.depth = picture.data();
-  frame.width = frame.stride = camera.width;
-  frame.height = camera.height;
   const testing::TestModel model(cloud, 64);
   EXPECT_EQ(model.fault(), ModelFault::none);
   const testing::AlignedBlock block(8 << 20);
@@ -143,7 +134,7 @@ PlainBodyFit fit_to_box(const testing::TestCloud& cloud) {
   points.lay_out(workspace, kMostPlainPoints);
   EXPECT_FALSE(workspace.exhausted());
   surface.start(camera, SensorDescription());
-  surface.build(frame, {0, 0, camera.width, camera.height});
+  surface.build(testing::frame_of(picture, camera), {0, 0, camera.width, camera.height});
   snapshot.start(camera, SensorDescription());
   snapshot.take(surface);
   snapshot.compute_normals(0, snapshot.lattice_height(), 0.01);

@@ -28,6 +28,15 @@ class Label : public ::testing::Test {
     for (const std::int8_t l : scene().points.label) ++count[l];
     return count;
   }
+  static double limit() {
+    return scene().tolerance.deformed(depth_of(usual_pose(), scene().tables.centre)) / kUnitsPerMetre;
+  }
+  /// The warp alone has all of the body at `pose`; its region does not.
+  static void warp_to(const RigidTransform& pose) {
+    scene().warp->home.fill(0);
+    scene().warp->rigid.fill(false);
+    scene().warp_to(pose);
+  }
   SightCounts frames(int count, bool with_memory = true) {
     SightCounts counts;
     for (int i = 0; i < count; ++i) counts = scene().label_now(with_memory);
@@ -110,16 +119,10 @@ TEST_F(Label, WhatTheCameraSeesThroughIsDeformedAfterClearEvidence) {
 TEST_F(Label, WhatTheWarpTakesThreeQuartersOfTheLimitAwayIsDeformed) {
   for (const double share : {0.6, 0.9}) {
     SetUp();
-    const double limit =
-        scene().tolerance.deformed(depth_of(usual_pose(), scene().tables.centre)) / kUnitsPerMetre;
     RigidTransform seen = usual_pose();
-    seen.translation.z() += share * limit;
+    seen.translation.z() += share * limit();
     scene().see_body(seen);
-    PatchWarp& warp = *scene().warp;
-    warp.reset(seen);
-    warp.home.fill(0);
-    warp.rigid.fill(false);
-    for (FixedPose& fixed : warp.fixed) fixed = FixedPose(seen, scene().tables.centre);
+    warp_to(seen);
     SightCounts counts;
     for (int frame = 0; frame < 8; ++frame) counts = scene().look_now();
     const auto count = labels();
@@ -133,21 +136,15 @@ TEST_F(Label, WhatTheWarpTakesThreeQuartersOfTheLimitAwayIsDeformed) {
 }
 
 TEST_F(Label, WhatLeftItsRegionIsMatchedBesideAHole) {
-  const double limit =
-      scene().tolerance.deformed(depth_of(usual_pose(), scene().tables.centre)) / kUnitsPerMetre;
   RigidTransform seen = usual_pose();
-  seen.translation.z() += 0.9 * limit;
+  seen.translation.z() += 0.9 * limit();
   Picture picture(scene().camera);
   picture.draw(scene().mesh, seen);
   picture.wall(1.6);
   constexpr int kLeft = 157, kRight = 163;
   picture.block(kLeft, 0, kRight, 240, 0);  // no readings there
   scene().see(picture);
-  PatchWarp& warp = *scene().warp;
-  warp.reset(seen);
-  warp.home.fill(0);
-  warp.rigid.fill(false);
-  for (FixedPose& fixed : warp.fixed) fixed = FixedPose(seen, scene().tables.centre);
+  warp_to(seen);
   for (int frame = 0; frame < 8; ++frame) (void)scene().look_now();
   const FixedPose fixed(seen, scene().tables.centre);
   const ModelTables& model = scene().tables;
@@ -174,11 +171,7 @@ TEST_F(Label, WhatOnlyTurnedIntoSightIsNotDeformed) {
   const Matrix3 turn = synthetic::turn({0, 1, 0}, 0.035);
   const RigidTransform seen = RigidTransform{turn, at - turn * at} * usual_pose();
   scene().see_body(seen);
-  PatchWarp& warp = *scene().warp;
-  warp.reset(seen);
-  warp.home.fill(0);
-  warp.rigid.fill(false);
-  for (FixedPose& fixed : warp.fixed) fixed = FixedPose(seen, scene().tables.centre);
+  warp_to(seen);
   for (int frame = 0; frame < 5; ++frame) (void)scene().look_now();
   const FixedPose region(usual_pose(), scene().tables.centre);
   const ModelTables& model = scene().tables;

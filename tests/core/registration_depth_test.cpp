@@ -12,16 +12,6 @@ namespace {
 
 using testing::AlignedBlock;
 
-Intrinsics small_camera() {
-  Intrinsics camera;
-  camera.width = 320;
-  camera.height = 240;
-  camera.fx = camera.fy = 285;
-  camera.cx = 160;
-  camera.cy = 120;
-  return camera;
-}
-
 /// A picture of the object at these poses before a wall, and a registration that is ready for it.
 struct DepthFixture {
   explicit DepthFixture(const std::vector<RigidTransform>& poses, std::uint32_t most_instances = 1)
@@ -33,16 +23,14 @@ struct DepthFixture {
       all.normals.insert(all.normals.end(), one.normals.begin(), one.normals.end());
     }
     picture = testing::depth_picture(camera, all, 1.2, 1, 0.001);
-    frame.depth = picture.data();
-    frame.width = frame.stride = camera.width;
-    frame.height = camera.height;
+    frame = testing::frame_of(picture, camera);
     settings.max_instances = most_instances;
     block =
         AlignedBlock(CloudRegistration::workspace_bytes(testing::bumpy_model(), picture.size(), settings));
     EXPECT_EQ(registration.start(testing::bumpy_model(), picture.size(), settings, block.span()), nullptr);
   }
   const RegistrationResult& run() { return registration.register_depth(frame, camera, SensorDescription()); }
-  Intrinsics camera = small_camera();
+  Intrinsics camera = testing::small_camera();
   std::vector<std::uint16_t> picture;
   DepthFrame frame;
   RegistrationSettings settings;

@@ -77,10 +77,14 @@ class TrackScene {
   void warp_now(const WarpSettings& settings = warp_settings()) {
     warp_patches(tables, patches, surface, projector, tolerance, regions, settings, points, *warp);
   }
+  /// Has all of the warp's patches at `pose`.
+  void warp_to(const RigidTransform& pose) {
+    warp->reset(pose);
+    for (FixedPose& fixed : warp->fixed) fixed = FixedPose(pose, tables.centre);
+  }
   /// With a surface that the base region alone moves.
   SightCounts label_now(bool with_memory = true) {
-    warp->reset(regions[0].pose);
-    for (FixedPose& fixed : warp->fixed) fixed = FixedPose(regions[0].pose, tables.centre);
+    warp_to(regions[0].pose);
     return look_now(with_memory);
   }
   /// With the surface where the warp has it.

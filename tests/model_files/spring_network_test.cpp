@@ -1,9 +1,12 @@
 #include "drivers/model_files/spring_network.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "tests/model_files/built.hpp"
 #include "tests/model_files/shapes.hpp"
@@ -80,6 +83,28 @@ TEST(SpringNetwork, EveryPointMovesWithThePatchesAroundIt) {
     led_by_own += blend.patch[0] == model.patch_of()[i] ? 1U : 0U;
   }
   EXPECT_GT(led_by_own, model.size() * 3 / 4);
+}
+
+TEST(SpringNetwork, TheStrongestLinksAreKeptInTheirOrder) {
+  std::vector<BodyLink> links;
+  for (const auto& [a, b, looks] : {std::array{0, 1, 5}, {0, 2, 3}, {1, 2, 3}, {1, 4, 9}, {2, 3, 2}}) {
+    BodyLink link;
+    link.a = static_cast<std::uint8_t>(a);
+    link.b = static_cast<std::uint8_t>(b);
+    link.looks = static_cast<std::uint32_t>(looks);
+    links.push_back(link);
+  }
+  const auto kept = [&](std::size_t most) {
+    std::vector<BodyLink> left = links;
+    keep_strongest(left, most, &BodyLink::looks);
+    std::vector<std::pair<int, int>> ends;
+    for (const BodyLink& link : left) ends.emplace_back(link.a, link.b);
+    return ends;
+  };
+  using Ends = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(kept(5), (Ends{{0, 1}, {0, 2}, {1, 2}, {1, 4}, {2, 3}}));
+  EXPECT_EQ(kept(3), (Ends{{0, 1}, {0, 2}, {1, 4}}));  // of equals the first
+  EXPECT_EQ(kept(1), (Ends{{1, 4}}));
 }
 
 TEST(BodyLinks, SpanAPlateFromSideToSide) {
