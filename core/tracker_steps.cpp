@@ -223,8 +223,7 @@ void publish_tracked(TrackerState& s) noexcept {
     if (region.parent >= 0 &&
         find_joint(s.patches, s.warp, static_cast<std::int8_t>(k), region.parent, joint)) {
       joint = region.pose * joint;
-      joint_now = {static_cast<float>(joint.x()), static_cast<float>(joint.y()),
-                   static_cast<float>(joint.z())};
+      joint_now = to_point(joint);
     }
     s.published[count++] = {
         static_cast<std::int8_t>(k),

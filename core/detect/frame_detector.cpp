@@ -13,10 +13,6 @@ namespace {
 constexpr double kLeastLean = 0.02;  // flatter supports fix no frame: the noise of a fitted normal (2-4°)
                                      // averaged over a support
 
-Vector3 to_vector(const Point3f& p) noexcept {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 }  // namespace
 
 void FrameDetector::lay_out(Workspace& workspace, const ModelView& model, const Intrinsics& camera,

@@ -21,17 +21,6 @@ constexpr std::size_t kPromisingShare = 4;
 constexpr double kPlainWeight =
     0.3;  // of agreeing with a wall, at the first look: any pose can sink into one
 
-Vector3 to_vector(const Point3f& p) noexcept {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
-/// Rows of the frame as a rotation: local <- cloud.
-Matrix3 axes_of(const LocalFrame& frame) noexcept {
-  Matrix3 m;
-  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = frame.axes[static_cast<std::size_t>(i)] / 16384.0;
-  return m;
-}
-
 /// The `count` best of some proposals to their front, best first.
 template <typename Proposals>
 void put_best_first(Proposals all, std::size_t count) noexcept {

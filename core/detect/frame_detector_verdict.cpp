@@ -23,10 +23,6 @@ constexpr double kLooksAlike = 0.9;         // of the model, on itself: but for 
 constexpr double kLeastSupport = 0.04;
 constexpr std::size_t kFewestSupporters = 4;
 
-Vector3 to_vector(const Point3f& p) noexcept {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 constexpr std::size_t kCubeAttitudes = 24;
 constexpr std::size_t kNearAttitudes = 6;
 constexpr double kNearTurn = 0.2;  // radians: what a local frame is off

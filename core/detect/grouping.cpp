@@ -9,16 +9,6 @@ namespace pliant {
 
 namespace {
 
-Vector3 to_vector(const Point3f& p) noexcept {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
-Matrix3 axes_of(const LocalFrame& frame) noexcept {
-  Matrix3 m;
-  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = frame.axes[static_cast<std::size_t>(i)] / 16384.0;
-  return m;
-}
-
 double squared(const Vector3& v) noexcept {
   return v.dot(v);
 }

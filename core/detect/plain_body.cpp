@@ -93,14 +93,10 @@ PlainBodyFit plain_body_fit(const ProbePoints& points, const DepthSnapshot& snap
                         if (off > limit) return;
                         // On the point's own line of sight, so that all distances are of one place.
                         const double scale = static_cast<double>(z / p.z);
-                        const Vector3 reading =
-                            scale * Vector3(static_cast<double>(p.x), static_cast<double>(p.y),
-                                            static_cast<double>(p.z));
+                        const Vector3 reading = scale * to_vector(p);
                         const Normal16& n = snapshot.normal(u, v);
                         readings[number] = {(reading - middle) / unit, Vector3(n.x, n.y, n.z) / 16384.0};
-                        own[number] = {(reading / scale - middle) / unit,
-                                       Vector3(static_cast<double>(normal.x), static_cast<double>(normal.y),
-                                               static_cast<double>(normal.z))};
+                        own[number] = {(reading / scale - middle) / unit, to_vector(normal)};
                         limits[number] = limit;
                         quadric.add(readings[number++].point);
                         fit.model += static_cast<double>(off * off);

@@ -75,8 +75,7 @@ struct LaneSums {
 double align_step(const ProbePoints& points, const DepthSnapshot& snapshot, std::size_t count, double reach,
                   RigidTransform& pose) noexcept {
   const Vector3 pivot = pose * points.centre();
-  const Point3f about = {static_cast<float>(pivot.x()), static_cast<float>(pivot.y()),
-                         static_cast<float>(pivot.z())};
+  const Point3f about = to_point(pivot);
   const auto wide = static_cast<float>(reach);
   LaneSums sums;
   Rows rows;

@@ -36,8 +36,7 @@ void PoseVotes::add(const RigidTransform& pose, std::size_t keypoint) noexcept {
   if (count_ == places_.size() || keypoint >= heard_.size()) return;
   const Vector3 place = pose * centre_;
   const Quaternion q = quaternion_from_rotation(pose.rotation);
-  places_[count_] = {static_cast<float>(place.x()), static_cast<float>(place.y()),
-                     static_cast<float>(place.z())};
+  places_[count_] = to_point(place);
   turns_[count_] = {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
                     static_cast<float>(q.z)};
   keypoint_[count_] = static_cast<std::uint32_t>(keypoint);
@@ -86,19 +85,19 @@ RigidTransform PoseVotes::mean_pose(std::size_t k) const noexcept {
   const Turn& own = turns_[k];
   Quaternion turn{0, 0, 0, 0};
   int count = 0;
-  grid_.visit_within(
-      places_[k], reach_, kMostNeighbours, [&](std::uint32_t j, const Point3f& p, float /*square*/) {
-        if (!same_attitude(j, k)) return;
-        const Turn& t = turns_[j];
-        const float cosine = own.w * t.w + own.x * t.x + own.y * t.y + own.z * t.z;
-        const double sign = cosine < 0 ? -1 : 1;
-        turn.w += sign * static_cast<double>(t.w);
-        turn.x += sign * static_cast<double>(t.x);
-        turn.y += sign * static_cast<double>(t.y);
-        turn.z += sign * static_cast<double>(t.z);
-        place += Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-        ++count;
-      });
+  grid_.visit_within(places_[k], reach_, kMostNeighbours,
+                     [&](std::uint32_t j, const Point3f& p, float /*square*/) {
+                       if (!same_attitude(j, k)) return;
+                       const Turn& t = turns_[j];
+                       const float cosine = own.w * t.w + own.x * t.x + own.y * t.y + own.z * t.z;
+                       const double sign = cosine < 0 ? -1 : 1;
+                       turn.w += sign * static_cast<double>(t.w);
+                       turn.x += sign * static_cast<double>(t.x);
+                       turn.y += sign * static_cast<double>(t.y);
+                       turn.z += sign * static_cast<double>(t.z);
+                       place += to_vector(p);
+                       ++count;
+                     });
   const double length = std::sqrt(turn.w * turn.w + turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
   return pose_from(place / count, {turn.w / length, turn.x / length, turn.y / length, turn.z / length});
 }

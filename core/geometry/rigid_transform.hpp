@@ -11,6 +11,12 @@ using Matrix3 = Eigen::Matrix<double, 3, 3>;
 struct Point3f {
   float x = 0, y = 0, z = 0;
 };
+[[nodiscard]] inline Vector3 to_vector(const Point3f& p) noexcept {
+  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+}
+[[nodiscard]] inline Point3f to_point(const Vector3& p) noexcept {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
 
 /// Unit quaternion, w first, w >= 0.
 struct Quaternion {

@@ -31,6 +31,12 @@ struct Descriptor {
 struct LocalFrame {
   std::array<std::int16_t, 9> axes;
 };
+/// Its rows as a rotation: local <- model.
+[[nodiscard]] inline Matrix3 axes_of(const LocalFrame& frame) noexcept {
+  Matrix3 m;
+  for (int i = 0; i < 9; ++i) m(i / 3, i % 3) = frame.axes[static_cast<std::size_t>(i)] / 16384.0;
+  return m;
+}
 
 /// First bytes of a model image. Little-endian; offsets from the image's first byte, multiples of 64.
 /// The checksum is FNV-1a (64 bits, over 64-bit little-endian words) of the whole image but itself.

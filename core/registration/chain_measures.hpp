@@ -13,10 +13,6 @@ namespace pliant {
 
 inline constexpr std::size_t kFinePoints = 2500;  ///< model points of a last refinement
 
-[[nodiscard]] inline Vector3 to_vector(const Point3f& p) noexcept {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 /// By how much a right match may be off, metres: one and a half times the distance of the model's keypoints.
 [[nodiscard]] double match_tolerance(const RegistrationState& s) noexcept;
 /// Within which a point of the working cloud stands for a point of the surface, metres.

@@ -31,8 +31,7 @@ std::size_t align_to_cloud(const ModelView& model, std::span<const std::uint16_t
   for (int iteration = 0; iteration < settings.iterations; ++iteration) {
     const FastTransform fast(pose);
     const Vector3 pivot = pose * model.centre();
-    const Point3f about = {static_cast<float>(pivot.x()), static_cast<float>(pivot.y()),
-                           static_cast<float>(pivot.z())};
+    const Point3f about = to_point(pivot);
     const double share =
         settings.iterations > 1 ? static_cast<double>(iteration) / (settings.iterations - 1) : 1;
     const auto gate =

@@ -195,8 +195,7 @@ void CloudRegistration::read_points(const DepthFrame& frame, const Intrinsics& c
         const Vector3 apart = at - instance.pose * s.model.centre();
         wanted = wanted || apart.dot(apart) < square;
       }
-      if (wanted)
-        point = {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())};
+      if (wanted) point = to_point(at);
     }
 }
 

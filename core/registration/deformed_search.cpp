@@ -47,8 +47,7 @@ void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResul
   // that ask for one, the nearest gets it, and the others ask again.
   for (std::size_t j = 0; j < s.base_count; ++j) s.claimed[j] = 0;
   for (std::size_t i = 0; i < n; ++i) s.gap_nearest[i] = PointGrid::kNone;
-  const Point3f eye = {static_cast<float>(s.eye.x()), static_cast<float>(s.eye.y()),
-                       static_cast<float>(s.eye.z())};
+  const Point3f eye = to_point(s.eye);
   const auto working_reach_f = static_cast<float>(2 * working_reach(s));
   for (int pass = 0; pass < 6; ++pass) {
     bool asked = false;

@@ -51,6 +51,10 @@ RegistrationStage stage_of(FrameDetector::Phase phase) noexcept {
   }
 }
 
+bool in_range(const Vector3& p) noexcept {
+  return p.z() > 0.05 && p.z() < limits::kMaxDepth;
+}
+
 /// The picture without the readings that the model at `pose` explains; kept in s.picture.
 DepthFrame without_instance(RegistrationState& s, const DepthFrame& frame, const Intrinsics& camera,
                             const SensorDescription& sensor, const RigidTransform& pose) noexcept {
@@ -64,8 +68,7 @@ DepthFrame without_instance(RegistrationState& s, const DepthFrame& frame, const
   for (std::size_t i = 0; i < s.model.size(); ++i) {
     const Point3f& m = s.model.positions()[i];
     const Normal16& n = s.model.normals()[i];
-    const Vector3 p =
-        pose * Vector3(static_cast<double>(m.x), static_cast<double>(m.y), static_cast<double>(m.z));
+    const Vector3 p = pose * to_vector(m);
     if (p.z() < sensor.near_limit || p.dot(pose.rotation * Vector3(n.x, n.y, n.z)) > 0) continue;
     // A point stands for the surface up to the next one.
     const double half = s.model.spacing() / p.z();
@@ -139,7 +142,7 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
   Vector3 middle = Vector3::Zero();
   std::size_t count = 0;
   for (const Point3f& p : scene) {
-    const Vector3 q(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    const Vector3 q = to_vector(p);
     const Vector3 d = q - eye;
     const double length = std::sqrt(d.dot(d));
     if (!(length > 1e-6 && length < 1e6)) continue;  // not for NaN either
@@ -164,9 +167,8 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
   const RigidTransform back = scene_from_camera.inverse();
   double wide = 0, high = 0;
   for (const Point3f& p : scene) {
-    const Vector3 q =
-        back * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-    if (!(q.z() > 0.05 && q.z() < limits::kMaxDepth)) continue;
+    const Vector3 q = back * to_vector(p);
+    if (!in_range(q)) continue;
     wide = std::max(wide, std::fabs(q.x() / q.z()));
     high = std::max(high, std::fabs(q.y() / q.z()));
   }
@@ -185,14 +187,21 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
   camera.cy = 0.5 * (camera.height - 1);
   camera.depth_scale = kDrawnUnitsPerMetre;
   for (std::uint16_t& d : s.picture) d = 0;
-  for (const Point3f& p : scene) {
-    const Vector3 q =
-        back * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-    if (!(q.z() > 0.05 && q.z() < limits::kMaxDepth)) continue;
+  // Where the camera has a point, and its pixel; false when it is not in the picture.
+  const auto project = [&](const Point3f& p, Vector3& q, std::size_t& pixel) {
+    q = back * to_vector(p);
+    if (!in_range(q)) return false;
     const int u = static_cast<int>(std::floor(camera.fx * q.x() / q.z() + camera.cx + 0.5));
     const int v = static_cast<int>(std::floor(camera.fy * q.y() / q.z() + camera.cy + 0.5));
-    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-    std::uint16_t& d = s.picture[row_major(v, camera.width, u)];
+    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) return false;
+    pixel = row_major(v, camera.width, u);
+    return true;
+  };
+  Vector3 q;
+  std::size_t pixel = 0;
+  for (const Point3f& p : scene) {
+    if (!project(p, q, pixel)) continue;
+    std::uint16_t& d = s.picture[pixel];
     const auto reading = static_cast<std::uint16_t>(q.z() * kDrawnUnitsPerMetre + 0.5);
     if (d == 0 || reading < d) d = reading;
   }
@@ -203,13 +212,8 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
   // In sight: as near as the nearest of its pixel, but for the slope of a surface across the pixel and noise.
   std::size_t drawn = 0, seen = 0;
   for (const Point3f& p : scene) {
-    const Vector3 q =
-        back * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-    if (!(q.z() > 0.05 && q.z() < limits::kMaxDepth)) continue;
-    const int u = static_cast<int>(std::floor(camera.fx * q.x() / q.z() + camera.cx + 0.5));
-    const int v = static_cast<int>(std::floor(camera.fy * q.y() / q.z() + camera.cy + 0.5));
-    if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-    const double nearest = s.picture[row_major(v, camera.width, u)] / kDrawnUnitsPerMetre;
+    if (!project(p, q, pixel)) continue;
+    const double nearest = s.picture[pixel] / kDrawnUnitsPerMetre;
     ++drawn;
     seen += q.z() - nearest < 0.02 * q.z() ? 1U : 0U;
   }

@@ -65,15 +65,11 @@ void thin_scene(RegistrationState& s, std::span<const Point3f> scene) noexcept {
 
 bool scene_is_flat(const RegistrationState& s) noexcept {
   Vector3 mean = Vector3::Zero();
-  for (std::size_t i = 0; i < s.base_count; ++i)
-    mean += Vector3(static_cast<double>(s.base[i].x), static_cast<double>(s.base[i].y),
-                    static_cast<double>(s.base[i].z));
+  for (std::size_t i = 0; i < s.base_count; ++i) mean += to_vector(s.base[i]);
   mean /= static_cast<double>(std::max<std::size_t>(1, s.base_count));
   Matrix3 m = Matrix3::Zero();
   for (std::size_t i = 0; i < s.base_count; ++i) {
-    const Vector3 d = Vector3(static_cast<double>(s.base[i].x), static_cast<double>(s.base[i].y),
-                              static_cast<double>(s.base[i].z)) -
-                      mean;
+    const Vector3 d = to_vector(s.base[i]) - mean;
     m += d * d.transpose();
   }
   const SymmetricEigen eigen =
@@ -94,8 +90,7 @@ void find_normals(RegistrationState& s) noexcept {
   static_cast<void>(s.working_grid.build(points, grid_cell_for_support(s.support)));
   if (s.one_view || !s.settings.consistent_normals) {
     const Vector3& v = s.eye;
-    NormalOrientation::towards(
-        points, {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())}, normals);
+    NormalOrientation::towards(points, to_point(v), normals);
   } else {
     s.orientation.outward(points, s.working_grid, 2.5 * leaf, normals);
   }

@@ -13,7 +13,7 @@ namespace {
 
 /// What the kernel needs of regions and settings.
 struct Plan {
-  std::array<FixedPose, limits::kMaxRegions> poses;
+  RegionPoses poses;
   std::array<std::size_t, limits::kMaxRegions> sizes{};  // of the sampling, by region
   std::size_t size = 0;
   std::int32_t gate = 0;  // 1/16 mm, at most 8191
@@ -83,8 +83,7 @@ Correspondence correspondence(const IntPoint& p, const IntPoint& n, std::size_t 
 void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
                const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept {
   Plan plan;
-  for (std::size_t k = 0; k < regions.size(); ++k)
-    if (regions[k].alive) plan.poses[k] = FixedPose(regions[k].pose, model.centre);
+  plan.poses = fixed_poses(regions, model.centre);
   plan.size = std::min(settings.points, model.size);
   for (const std::int8_t home : points.home) ++plan.sizes[static_cast<std::size_t>(home)];
   for (std::size_t& size : plan.sizes)

@@ -36,9 +36,8 @@ HomeCounts homes_around(const ModelTables& model, const PointState& points, std:
 /// Beside how well each explains the reading, every neighbour has a say: regions are parts of the surface,
 /// not scattered points.
 bool consider_rivals(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
-                     const std::array<FixedPose, limits::kMaxRegions>& poses, std::int32_t limit,
-                     const Sighting::Look& own, std::uint8_t enough, PointState& points,
-                     std::size_t i) noexcept {
+                     const RegionPoses& poses, std::int32_t limit, const Sighting::Look& own,
+                     std::uint8_t enough, PointState& points, std::size_t i) noexcept {
   const HomeCounts around = homes_around(model, points, i);
   const auto home = static_cast<std::size_t>(points.home[i]);
   const std::int32_t own_cost = own.sight == Sight::agrees ? std::abs(own.residual) : 2 * limit;
@@ -73,8 +72,7 @@ bool consider_rivals(const ModelTables& model, const RegionSet& regions, const S
 /// A point that is not seen goes with the region, of those around it first, under which free space allows it.
 /// True when that is another than its own.
 bool carry_where_allowed(const ModelTables& model, const RegionSet& regions, const Sighting& sighting,
-                         const std::array<FixedPose, limits::kMaxRegions>& poses, PointState& points,
-                         std::size_t i) noexcept {
+                         const RegionPoses& poses, PointState& points, std::size_t i) noexcept {
   const std::int8_t home = points.home[i];
   if (!sighting.refuted(i, poses[static_cast<std::size_t>(home)])) return false;
   const HomeCounts around = homes_around(model, points, i);
@@ -173,13 +171,8 @@ IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) no
 
 SightCounts label(const LabelContext& context, const RegionSet& regions, PointState& points) noexcept {
   const ModelTables& model = context.model;
-  std::array<FixedPose, limits::kMaxRegions> poses;
-  int alive = 0;
-  for (std::size_t k = 0; k < regions.size(); ++k) {
-    if (!regions[k].alive) continue;
-    poses[k] = FixedPose(regions[k].pose, model.centre);
-    ++alive;
-  }
+  const RegionPoses poses = fixed_poses(regions, model.centre);
+  const int alive = count_alive(regions);
   WarpLanes lanes;
   for (std::size_t p = 0; p < context.patches.count; ++p) lanes[p] = PoseLanes(context.warp.fixed[p]);
   const Sighting sighting(model, context.surface, context.projector, context.tolerance);

@@ -76,9 +76,7 @@ void choose_still_or_moving(const ModelTables& model, const Surface& surface, co
 
 Window predicted_window(const ModelTables& model, const Projector& projector, const PointState& points,
                         const RegionSet& regions, std::int32_t reach, int width, int height) noexcept {
-  std::array<FixedPose, limits::kMaxRegions> poses;
-  for (std::size_t k = 0; k < regions.size(); ++k)
-    if (regions[k].alive) poses[k] = FixedPose(regions[k].pose, model.centre);
+  const RegionPoses poses = fixed_poses(regions, model.centre);
   constexpr std::size_t kSample = 512;  // farthest-point order: these reach every end of the object
   Window window{width, height, 0, 0};
   const std::size_t size = std::min(kSample, model.size);

@@ -251,9 +251,7 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
 /// Rigid points bear the label of the region that they belong to now, where it puts them: those that changed
 /// region, or all of them.
 void settle(const RegroupContext& context, const RegionSet& regions, bool all, PointState& points) noexcept {
-  std::array<FixedPose, limits::kMaxRegions> poses;
-  for (std::size_t k = 0; k < regions.size(); ++k)
-    if (regions[k].alive) poses[k] = FixedPose(regions[k].pose, context.model.centre);
+  const RegionPoses poses = fixed_poses(regions, context.model.centre);
   for (std::size_t i = 0; i < context.model.size; ++i) {
     if (points.label[i] < 0 || (!all && points.label[i] == points.home[i])) continue;
     points.label[i] = points.home[i];

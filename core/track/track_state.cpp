@@ -4,6 +4,18 @@
 
 namespace pliant {
 
+int count_alive(const RegionSet& regions) noexcept {
+  return static_cast<int>(
+      std::count_if(regions.begin(), regions.end(), [](const TrackedRegion& r) { return r.alive; }));
+}
+
+RegionPoses fixed_poses(const RegionSet& regions, const Vector3& centre) noexcept {
+  RegionPoses poses{};
+  for (std::size_t k = 0; k < regions.size(); ++k)
+    if (regions[k].alive) poses[k] = FixedPose(regions[k].pose, centre);
+  return poses;
+}
+
 void PointState::lay_out(Workspace& workspace, std::size_t points) noexcept {
   home = workspace.take<std::int8_t>(points);
   evidence = workspace.take<std::uint8_t>(points);

@@ -37,6 +37,11 @@ struct TrackedRegion {
 };
 
 using RegionSet = std::array<TrackedRegion, limits::kMaxRegions>;
+using RegionPoses = std::array<FixedPose, limits::kMaxRegions>;
+
+[[nodiscard]] int count_alive(const RegionSet& regions) noexcept;
+/// Of those alive. `centre`: of the model.
+[[nodiscard]] RegionPoses fixed_poses(const RegionSet& regions, const Vector3& centre) noexcept;
 
 /// How the last look at a point went.
 enum class Sight : std::uint8_t {

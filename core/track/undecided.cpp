@@ -14,9 +14,8 @@ enum Standing : std::int32_t { kOut = 0, kUndecided = 1, kDecided = 2 };
 /// what smoothing leaves of the noise.
 constexpr std::int32_t kClearly = 4;  // a fourth
 
-Standing standing_of(const Sighting& sighting, const RegionSet& regions,
-                     const std::array<FixedPose, limits::kMaxRegions>& poses, std::int32_t limit,
-                     std::size_t home, std::size_t i) noexcept {
+Standing standing_of(const Sighting& sighting, const RegionSet& regions, const RegionPoses& poses,
+                     std::int32_t limit, std::size_t home, std::size_t i) noexcept {
   const Sighting::Look own = sighting.look(i, poses[home]);
   if (own.sight != Sight::agrees) return kOut;
   for (std::size_t k = 0; k < regions.size(); ++k) {
@@ -33,14 +32,8 @@ Standing standing_of(const Sighting& sighting, const RegionSet& regions,
 
 void settle_undecided(const ModelTables& model, const PatchTables& patches, const PatchSet& border,
                       const Sighting& sighting, const RegionSet& regions, PointState& points) noexcept {
-  std::array<FixedPose, limits::kMaxRegions> poses;
-  int alive = 0;
-  for (std::size_t k = 0; k < regions.size(); ++k) {
-    if (!regions[k].alive) continue;
-    poses[k] = FixedPose(regions[k].pose, model.centre);
-    ++alive;
-  }
-  if (alive < 2) return;
+  if (count_alive(regions) < 2) return;
+  const RegionPoses poses = fixed_poses(regions, model.centre);
   std::size_t head = 0, tail = 0;
   for (std::size_t i = 0; i < model.size; ++i) {
     const auto home = static_cast<std::size_t>(points.home[i]);

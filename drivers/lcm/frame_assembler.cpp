@@ -148,10 +148,7 @@ void place_points(const ReceivedFrame& frame, const ReceivedModel& model, std::v
     const std::int8_t label = frame.labels[i];
     const Point3f& rest = model.points[i];
     const RigidTransform& motion = label >= 0 ? transforms[static_cast<std::size_t>(label)] : first;
-    const Vector3 place = motion * Vector3(static_cast<double>(rest.x), static_cast<double>(rest.y),
-                                           static_cast<double>(rest.z));
-    positions[i] = {static_cast<float>(place.x()), static_cast<float>(place.y()),
-                    static_cast<float>(place.z())};
+    positions[i] = to_point(motion * to_vector(rest));
   }
   for (std::size_t i = 0; i < frame.deformed.size(); ++i) {
     const auto index = static_cast<std::size_t>(frame.deformed[i]);

@@ -108,8 +108,7 @@ void TrackMessages::add_deformed(const TrackResult& result) noexcept {
     const Vector3 carried = result.pose * Vector3(rest_[i].x, rest_[i].y, rest_[i].z);
     const Vector3 now(result.positions[i].x, result.positions[i].y, result.positions[i].z);
     const Vector3 moved = now - carried;
-    displacements_[deformed] = {static_cast<float>(moved.x()), static_cast<float>(moved.y()),
-                                static_cast<float>(moved.z())};
+    displacements_[deformed] = to_point(moved);
     deformed_[deformed++] = static_cast<std::uint16_t>(i);
   }
   const std::size_t part_count = parts(deformed, kDeformedPerPart);

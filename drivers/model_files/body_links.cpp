@@ -31,7 +31,7 @@ Body body_of(const NetworkInput& input) {
   for (std::size_t i = 0; i < input.positions.size(); ++i) {
     const Point3f& p = input.positions[i];
     const Normal16& n = input.normals[i];
-    body.points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    body.points.push_back(to_vector(p));
     body.normals.emplace_back(Vector3(n.x, n.y, n.z) / 16384.0);
   }
   return body;

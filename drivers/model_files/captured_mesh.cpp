@@ -81,9 +81,7 @@ Geometry captured_mesh(const DistanceVolume& volume, const CapturedMeshSettings&
   drop_islands(mesh, settings.least_part);
   drop_loose(mesh);
   smooth_grain(mesh, settings.smoothing);
-  const auto put = [](const Vector3& v, std::vector<Point3f>& to) {
-    to.push_back({static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
-  };
+  const auto put = [](const Vector3& v, std::vector<Point3f>& to) { to.push_back(to_point(v)); };
   for (const Vector3& v : mesh.vertices) put(v, geometry.vertices);
   for (const Vector3& n : vertex_normals(mesh)) put(n, geometry.normals);
   geometry.triangles = std::move(mesh.triangles);
@@ -92,8 +90,7 @@ Geometry captured_mesh(const DistanceVolume& volume, const CapturedMeshSettings&
 
 double captured_spacing(const Geometry& captured, double sigma) {
   Mesh mesh;
-  for (const Point3f& p : captured.vertices)
-    mesh.vertices.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+  for (const Point3f& p : captured.vertices) mesh.vertices.push_back(to_vector(p));
   mesh.triangles = captured.triangles;
   const double area = surface_area(mesh);
   const double usual = kSamplingShare * even_spacing(area, kUsualPoints);

@@ -16,7 +16,7 @@ constexpr double kMostWelded = 0.05e-3;  // metres
 constexpr std::uint32_t kGone = 0xFFFFFFFFU;
 
 Vector3 scaled(const Point3f& p, double factor) {
-  return Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)) * factor;
+  return to_vector(p) * factor;
 }
 
 /// Cells twice the tolerance wide: the tolerance around a point reaches into eight of them at most, and a

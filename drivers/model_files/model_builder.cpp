@@ -98,6 +98,15 @@ void fill_normals(OrientedCloud& cloud) {
 }
 
 /// The model's points, in farthest-point order.
+/// The model's points out of `cloud`, which stands for `given` vertices.
+OrientedCloud chosen_points(const OrientedCloud& cloud, std::size_t given, double spacing,
+                            BuiltModel& built) {
+  const bool all_wanted = given <= limits::kMaxModelPoints || spacing > 0;
+  OrientedCloud chosen = thinned(cloud, spacing, all_wanted ? limits::kMaxModelPoints : kUsualPoints);
+  built.origin = chosen.points.size() < given ? PointOrigin::reduced_vertices : PointOrigin::input_vertices;
+  return chosen;
+}
+
 OrientedCloud points_of_mesh(Mesh& mesh, const ModelBuildSettings& settings, BuiltModel& built) {
   const double spacing = settings.spacing;
   built.closed_surface = settings.wound_outward ? is_closed(mesh) : orient_mesh(mesh, built.warnings);
@@ -107,12 +116,7 @@ OrientedCloud points_of_mesh(Mesh& mesh, const ModelBuildSettings& settings, Bui
   if (enough && vertices_are_dense(mesh, coarse)) {
     OrientedCloud cloud{mesh.vertices, vertex_normals(mesh)};
     fill_normals(cloud);
-    const bool fits = cloud.points.size() <= limits::kMaxModelPoints;
-    OrientedCloud chosen =
-        thinned(cloud, spacing, fits || spacing > 0 ? limits::kMaxModelPoints : kUsualPoints);
-    built.origin = chosen.points.size() < cloud.points.size() ? PointOrigin::reduced_vertices
-                                                              : PointOrigin::input_vertices;
-    return chosen;
+    return chosen_points(cloud, mesh.vertices.size(), spacing, built);
   }
   built.origin = PointOrigin::sampled_surface;
   const double wished =
@@ -137,12 +141,7 @@ OrientedCloud points_of_cloud(const Mesh& mesh, double spacing, BuiltModel& buil
       std::any_of(cloud.normals.begin(), cloud.normals.end(), [](const Vector3& n) { return !n.isZero(); });
   cloud.normals = any ? complete_normals(cloud.points, cloud.normals, given_spacing, built.warnings)
                       : estimate_normals(cloud.points, given_spacing);
-  const bool fits = mesh.vertices.size() <= limits::kMaxModelPoints;
-  OrientedCloud chosen =
-      thinned(cloud, spacing, fits || spacing > 0 ? limits::kMaxModelPoints : kUsualPoints);
-  built.origin = chosen.points.size() < mesh.vertices.size() ? PointOrigin::reduced_vertices
-                                                             : PointOrigin::input_vertices;
-  return chosen;
+  return chosen_points(cloud, mesh.vertices.size(), spacing, built);
 }
 
 std::int16_t to_q14(double x) {
@@ -252,7 +251,7 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   std::vector<Normal16> normals;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     const Vector3 &p = cloud.points[i], &n = cloud.normals[i];
-    positions.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+    positions.push_back(to_point(p));
     normals.push_back({to_q14(n.x()), to_q14(n.y()), to_q14(n.z()), 0});
   }
   measure(positions, header);

@@ -18,7 +18,7 @@ constexpr std::size_t kPointsEach = 24;  // fewer would not tell a patch's turn 
 /// Where the tracker has the point, which counts in whole units from the model's centre.
 Vector3 rest(const NetworkInput& input, std::size_t i) {
   const Point3f& p = input.positions[i];
-  const Vector3 at(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+  const Vector3 at = to_vector(p);
   const Vector3 units = (at - input.centre) * kUnitsPerMetre;
   return input.centre +
          Vector3(std::floor(units.x() + 0.5), std::floor(units.y() + 0.5), std::floor(units.z() + 0.5)) /

@@ -49,7 +49,7 @@ class Actor {
  protected:
   [[nodiscard]] Vector3 rest(std::size_t i) const {
     const Point3f& p = mesh_.vertices[i];
-    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+    return to_vector(p);
   }
 
   Geometry mesh_;  ///< model frame

@@ -65,9 +65,7 @@ Surroundings::Surroundings() {
   const auto add = [&](Solid solid, const Vector3& low, const Vector3& high) {
     Geometry mesh = mesh_of(solid, low, high, 0.008);
     Thing thing;
-    for (const Point3f& p : mesh.vertices)
-      thing.vertices.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y),
-                                  static_cast<double>(p.z));
+    for (const Point3f& p : mesh.vertices) thing.vertices.push_back(to_vector(p));
     thing.triangles = std::move(mesh.triangles);
     most = std::max(most, thing.vertices.size());
     things_.push_back(std::move(thing));

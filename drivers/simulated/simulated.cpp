@@ -90,8 +90,7 @@ class Simulated final : public SimulatedSource {
     vertices_.resize(count);
     float_vertices_.resize(count);
     visible_.resize(count);
-    for (const Point3f& p : actor_->hand().vertices)
-      hand_rest_.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    for (const Point3f& p : actor_->hand().vertices) hand_rest_.push_back(to_vector(p));
     hand_.resize(hand_rest_.size());
     depth_.resize(image_.pixels().size());
   }
@@ -163,7 +162,7 @@ class Simulated final : public SimulatedSource {
     std::int64_t seen = 0;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       const Vector3& p = vertices_[i];
-      float_vertices_[i] = {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+      float_vertices_[i] = to_point(p);
       if (visible_[i] != 0 && !image_.sees(p, kVisibleTolerance)) visible_[i] = 0;
       seen += visible_[i];
     }

@@ -69,9 +69,8 @@ Geometry mesh_of(Solid solid, const Vector3& low, const Vector3& high, double sp
   for (const Vector3& p : net.vertices) {
     const Vector3 gradient = gradient_at(solid, p);
     const Vector3 n = gradient / std::sqrt(std::max(gradient.squaredNorm(), 1e-12));
-    mesh.vertices.push_back(
-        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
-    mesh.normals.push_back({static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())});
+    mesh.vertices.push_back(to_point(p));
+    mesh.normals.push_back(to_point(n));
   }
   return mesh;
 }

@@ -54,8 +54,7 @@ Result<ViewCloud> read_cloud(const std::string& path, double metres_per_unit) {
   ViewCloud cloud;
   std::size_t before = 0;
   for (const Point3f& p : geometry->vertices) {
-    cloud.push_back(metres_per_unit *
-                    Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)));
+    cloud.push_back(metres_per_unit * to_vector(p));
     before += cloud.back().z() > 0 ? 1U : 0U;
   }
   if (2 * before < cloud.size() || cloud.empty())

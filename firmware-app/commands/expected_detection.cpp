@@ -30,7 +30,7 @@ OrientedCloud cloud_of(const ModelView& model) {
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Point3f& p = model.positions()[i];
     const Normal16& n = model.normals()[i];
-    cloud.points.emplace_back(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    cloud.points.push_back(to_vector(p));
     cloud.normals.emplace_back(Vector3(n.x, n.y, n.z) / 16384.0);
   }
   return cloud;

@@ -12,14 +12,6 @@
 
 namespace pliant::demo {
 
-namespace {
-
-Vector3 vector_of(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
-}  // namespace
-
 Snapshots::Snapshots(const Intrinsics& camera, const ModelView& model, std::span<const std::int64_t> frames)
     : camera_(camera), model_(model) {
   for (const std::int64_t frame : frames) {
@@ -70,8 +62,8 @@ Outcome Snapshots::draw(const Shot& shot, const std::string& path) const {
   if (shot.state == TrackState::tracking) {
     for (std::size_t i = 0; i < displacement.size(); ++i) {
       if (shot.labels[i] != kDeformed) continue;
-      const Vector3 carried = shot.pose * vector_of(model_.positions()[i]);
-      displacement[i] = static_cast<float>((vector_of(shot.positions[i]) - carried).norm());
+      const Vector3 carried = shot.pose * to_vector(model_.positions()[i]);
+      displacement[i] = static_cast<float>((to_vector(shot.positions[i]) - carried).norm());
     }
     view.positions = shot.positions;
     view.labels = shot.labels;

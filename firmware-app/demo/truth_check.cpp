@@ -11,10 +11,6 @@ namespace pliant::demo {
 
 namespace {
 
-Vector3 vector_of(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 /// Sums from which the best rigid motion between two sets of points follows.
 struct Moments {
   Vector3 from = Vector3::Zero(), to = Vector3::Zero();
@@ -75,12 +71,12 @@ TruthCheck::TruthCheck(const ModelView& model, const RememberingSource& source)
   truth_.vertices.resize(mesh_rest_.size());
   // Each model point follows its three nearest vertices, the nearer the more: exact where it is a vertex.
   for (const Point3f& point : model.positions()) {
-    const Vector3 p = vector_of(point);
+    const Vector3 p = to_vector(point);
     std::array<double, 3> nearest;
     nearest.fill(std::numeric_limits<double>::max());
     Place place;
     for (std::uint32_t v = 0; v < mesh_rest_.size(); ++v) {
-      double square = (vector_of(mesh_rest_[v]) - p).squaredNorm();
+      double square = (to_vector(mesh_rest_[v]) - p).squaredNorm();
       std::uint32_t vertex = v;
       for (std::size_t k = 0; k < nearest.size(); ++k)
         if (square < nearest[k]) {
@@ -111,10 +107,10 @@ void TruthCheck::look(const TrackResult& result) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = places_[i].vertices[k];
       where +=
-          places_[i].weights[k] * (vector_of(truth_.vertices[v]) - truth_.base * vector_of(mesh_rest_[v]));
+          places_[i].weights[k] * (to_vector(truth_.vertices[v]) - truth_.base * to_vector(mesh_rest_[v]));
     }
     if (result.labels[i] != kNotObserved)
-      position_.add(std::llround((vector_of(result.positions[i]) - where).norm() * 1e6));
+      position_.add(std::llround((to_vector(result.positions[i]) - where).norm() * 1e6));
   }
   if (!result.regions.empty() && result.regions.front().id == 0) compare_base(result);
 }

@@ -21,7 +21,7 @@ Mesh star(double size, Radius&& radius) {
   Geometry geometry = geometry_of(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vector3 d = mesh.vertices[i].normalized();
-    geometry.vertices[i] = testing::point3f(radius(d) * d);
+    geometry.vertices[i] = to_point(radius(d) * d);
   }
   return scaled(geometry, size);
 }

@@ -23,8 +23,8 @@ std::vector<Point3f> balls(std::size_t points, int count) {
     for (std::size_t i = 0; i < each; ++i) {
       const double z = 1 - 2 * (static_cast<double>(i) + 0.5) / static_cast<double>(each);
       const double r = std::sqrt(1 - z * z), a = 2.4 * static_cast<double>(i);
-      out.push_back(testing::point3f(Vector3(0.35 * ball - 0.3, 0.45, 0.9) +
-                                     0.1 * Vector3(r * std::cos(a), r * std::sin(a), z)));
+      out.push_back(to_point(Vector3(0.35 * ball - 0.3, 0.45, 0.9) +
+                             0.1 * Vector3(r * std::cos(a), r * std::sin(a), z)));
     }
   return out;
 }
@@ -41,7 +41,7 @@ std::vector<Point3f> clutter(std::size_t points, unsigned seed) {
     const double u = 0.4 * unit(random), v = 0.4 * unit(random);
     double z = 0;
     for (const auto& w : wave) z += 0.012 * std::sin(60 * (w[0] * u + w[1] * v) + 3 * w[2]) * w[3];
-    out.push_back(testing::point3f(Vector3(u, v, 1 + z)));
+    out.push_back(to_point(Vector3(u, v, 1 + z)));
   }
   return out;
 }
@@ -61,8 +61,8 @@ std::vector<Point3f> consistent_scene() {
   std::vector<Point3f> points;
   for (int copy = 0; copy < 3; ++copy)
     for (const Point3f& p : testing::bumpy_model().positions()) {
-      const Vector3 q = usual_pose() * (testing::vector3(p) + Vector3(0.002 * copy, 0, 0));
-      points.push_back(testing::point3f(q));
+      const Vector3 q = usual_pose() * (to_vector(p) + Vector3(0.002 * copy, 0, 0));
+      points.push_back(to_point(q));
     }
   return points;
 }

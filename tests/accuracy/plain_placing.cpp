@@ -7,18 +7,6 @@
 
 namespace pliant {
 
-namespace {
-
-Vector3 vector(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
-Point3f point(const Vector3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-}  // namespace
-
 PlainPlacing::PlainPlacing(const ModelView& model) : rest_(model.positions()) {}
 
 void PlainPlacing::rigid(const TrackResult& result, std::vector<Point3f>& places) {
@@ -34,12 +22,13 @@ void PlainPlacing::rigid(const TrackResult& result, std::vector<Point3f>& places
     double least = std::numeric_limits<double>::max();
     if (region < 0)
       for (const std::size_t j : rigid_points_) {
-        const double square = (vector(rest_[j]) - vector(rest_[i])).squaredNorm();
+        const double square = (to_vector(rest_[j]) - to_vector(rest_[i])).squaredNorm();
         if (square >= least) continue;
         least = square;
         region = result.labels[j];
       }
-    places[i] = point(poses[static_cast<std::size_t>(std::max<std::int8_t>(region, 0))] * vector(rest_[i]));
+    places[i] =
+        to_point(poses[static_cast<std::size_t>(std::max<std::int8_t>(region, 0))] * to_vector(rest_[i]));
   }
 }
 
@@ -52,7 +41,7 @@ void PlainPlacing::radius_search(const TrackResult& result, const DepthFrame& fr
       taken_[static_cast<std::size_t>(result.matches[i])] = true;
   for (std::size_t i = 0; i < rest_.size(); ++i) {
     if (result.labels[i] != kDeformed) continue;
-    const Vector3 at = vector(places[i]);
+    const Vector3 at = to_vector(places[i]);
     if (!(at.z() > 0)) continue;
     const auto room = static_cast<int>(std::ceil(radius * camera.fx / at.z()));
     const auto u = static_cast<int>(std::lround(camera.fx * at.x() / at.z() + camera.cx)),
@@ -75,7 +64,7 @@ void PlainPlacing::radius_search(const TrackResult& result, const DepthFrame& fr
       }
     if (pixel == taken_.size()) continue;
     taken_[pixel] = true;
-    places[i] = point(nearest);
+    places[i] = to_point(nearest);
   }
 }
 

@@ -14,7 +14,7 @@ Mesh lumpy(double share) {
   Geometry geometry = geometry_of(unit);
   for (std::size_t i = 0; i < unit.vertices.size(); ++i) {
     const Vector3 d = unit.vertices[i].normalized();
-    geometry.vertices[i] = testing::point3f((0.09 + share * (testing::bumpy_radius(d) - 0.09)) * d);
+    geometry.vertices[i] = to_point((0.09 + share * (testing::bumpy_radius(d) - 0.09)) * d);
   }
   return scaled(geometry, kSize);
 }

@@ -33,10 +33,6 @@ struct Hinge {
   }
 };
 
-Vector3 to_vector3(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 /// The case's figure in another attitude: waist and elbow bent by these angles (radians) about the same
 /// hinges.
 struct BentFigure {
@@ -68,7 +64,7 @@ BentFigure bend(const std::filesystem::path& folder, double waist_angle, double 
     int label = 0;
     fields >> index >> label;
     if (index >= figure.model.size()) continue;
-    const Vector3 p = to_vector3(figure.model[index]), q = to_vector3(scene->vertices[k]);
+    const Vector3 p = to_vector(figure.model[index]), q = to_vector(scene->vertices[k]);
     RigidTransform pose = label <= 3 && label >= 1 ? figure.poses[static_cast<std::size_t>(label - 1)] : base;
     if (label == 4) {
       // Between two parts: bent by the share of a hinge's angle that the case bent it by.
@@ -85,8 +81,7 @@ BentFigure bend(const std::filesystem::path& folder, double waist_angle, double 
         }
     }
     const Vector3 placed = pose * p;
-    figure.scene.push_back(
-        {static_cast<float>(placed.x()), static_cast<float>(placed.y()), static_cast<float>(placed.z())});
+    figure.scene.push_back(to_point(placed));
     figure.part.push_back(label);
   }
   return figure;
@@ -123,11 +118,11 @@ TEST(SmallAngles, TheFiguresPartsAreToldApart) {
     const RigidTransform back = figure.poses[k].inverse();
     for (std::size_t i = 0; i < figure.scene.size(); i += 7) {
       if (figure.part[i] != static_cast<int>(k + 1)) continue;
-      const Vector3 p = back * to_vector3(figure.scene[i]);
+      const Vector3 p = back * to_vector(figure.scene[i]);
       std::size_t nearest = 0;
       double square = 1e9;
       for (std::size_t m = 0; m < model.view.size(); ++m) {
-        const Vector3 gap = to_vector3(model.view.positions()[m]) - p;
+        const Vector3 gap = to_vector(model.view.positions()[m]) - p;
         if (gap.dot(gap) < square) {
           square = gap.dot(gap);
           nearest = m;

@@ -18,7 +18,7 @@ inline std::vector<Point3f> torn_scene(const ModelView& model, TornKind kind, un
   std::uniform_real_distribution<double> unit(0, 1);
   const auto at = [&](std::size_t i) {
     const Point3f& p = model.positions()[i];
-    return Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    return to_vector(p);
   };
   std::size_t tip = 0;
   do tip = random() % model.size();
@@ -42,7 +42,7 @@ inline std::vector<Point3f> torn_scene(const ModelView& model, TornKind kind, un
   const double noise = 0.2 * model.spacing();
   const auto put = [&](const Vector3& p) {
     const Vector3 q = pose * p + noise * Vector3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
-    points.push_back({static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())});
+    points.push_back(to_point(q));
   };
   for (std::size_t i = 0; i < model.size(); ++i) {
     const Vector3 p = at(i);
@@ -88,7 +88,7 @@ inline TornResult register_torn(const ModelView& model, const std::vector<Point3
     for (std::size_t i = 0; i < model.size(); ++i) {
       if (instance.labels[i] != static_cast<std::int8_t>(r)) continue;
       const Point3f& p = model.positions()[i];
-      const Vector3 x(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+      const Vector3 x = to_vector(p);
       for (std::size_t k = 0; k < instance.regions.size(); ++k)
         if (k != r)
           least =

@@ -167,9 +167,7 @@ inline DepthFrame frame_of(const std::vector<std::uint16_t>& picture, const Intr
 /// The mesh's vertices and triangles as a file would give them.
 inline Geometry geometry_of(const Mesh& mesh) {
   Geometry geometry;
-  for (const Vector3& v : mesh.vertices)
-    geometry.vertices.push_back(
-        {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
+  for (const Vector3& v : mesh.vertices) geometry.vertices.push_back(to_point(v));
   geometry.triangles = mesh.triangles;
   return geometry;
 }

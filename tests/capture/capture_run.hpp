@@ -45,10 +45,6 @@ inline Block block_of(std::size_t bytes) {
   return Block(static_cast<std::byte*>(std::aligned_alloc(Workspace::kAlignment, whole)));
 }
 
-inline Vector3 to_vector(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 inline double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 1e9;
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

@@ -14,9 +14,7 @@
 namespace pliant::test {
 
 inline Geometry with_normals(const Mesh& mesh) {
-  const auto put = [](const Vector3& v, std::vector<Point3f>& to) {
-    to.push_back({static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())});
-  };
+  const auto put = [](const Vector3& v, std::vector<Point3f>& to) { to.push_back(to_point(v)); };
   Geometry geometry;
   for (const Vector3& v : mesh.vertices) put(v, geometry.vertices);
   for (const Vector3& n : vertex_normals(mesh)) put(n, geometry.normals);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
@@ -15,12 +15,9 @@ using synthetic::pose_at;
 using synthetic::TrackScene;
 using synthetic::usual_pose;
 
-class Align : public ::testing::Test {
+class Align : public synthetic::SharedScene<synthetic::bumpy_body> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override { scene().points.reset(); }
-  static TrackScene& scene() { return *shared_; }
 
   static RigidTransform moved(const RigidTransform& pose, double metres, double radians, unsigned which) {
     const Vector3 axis(which % 3 == 0 ? 1 : 0.3, which % 3 == 1 ? 1 : -0.2, which % 3 == 2 ? 1 : 0.1);
@@ -31,11 +28,7 @@ class Align : public ::testing::Test {
     const Vector3 centre = scene().tables.centre;
     return (pose * centre - usual_pose() * centre).norm() * 1000;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> Align::shared_;
 
 TEST_F(Align, FindsTheTruePoseFromAFramesMotionAway) {
   scene().see_body(usual_pose());

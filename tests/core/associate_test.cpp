@@ -7,26 +7,21 @@
 #include <cstdlib>
 #include <utility>
 
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::Picture;
-using synthetic::TrackScene;
 using synthetic::usual_pose;
 
-/// One scene for all: it is not changed but by what a test sets first.
-class Associate : public ::testing::Test {
+class Associate : public synthetic::SharedScene<synthetic::bumpy_body> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     scene().points.reset();
     scene().place(usual_pose());
     scene().see_body(usual_pose());
   }
-  static TrackScene& scene() { return *shared_; }
 
   std::size_t run(std::int32_t gate, std::size_t most = SIZE_MAX) {
     AssociateSettings settings;
@@ -35,11 +30,7 @@ class Associate : public ::testing::Test {
     associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
     return scene().points.correspondence_count;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> Associate::shared_;
 
 TEST_F(Associate, FindsTheVisibleSurfaceAtTheTruePose) {
   const std::size_t count = run(20 * kUnitsPerMillimetre);

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "core/deform/patch_warp.hpp"
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::Picture;
-using synthetic::TrackScene;
 
 /// A flat body of 24 × 18 × 3 cm.
 Geometry flat_body() {
@@ -28,17 +27,14 @@ Vector3 bent(const Vector3& p, double angle) {
   return {(radius - p.z()) * std::sin(a), p.y(), radius - (radius - p.z()) * std::cos(a)};
 }
 
-class FarSide : public ::testing::Test {
+class FarSide : public synthetic::SharedScene<flat_body> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(flat_body()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     scene().points.reset();
     scene().place(pose());
     scene().warp->reset(pose());
     scene().patches.start(scene().model);
   }
-  static TrackScene& scene() { return *shared_; }
   static RigidTransform pose() { return synthetic::pose_at({0.01, -0.01, 0.75}, {1, 0.3, 0.1}, 0.35); }
 
   template <typename Move>
@@ -60,21 +56,14 @@ class FarSide : public ::testing::Test {
       const Vector3 rest = scene().rest(i);
       const double way = (move(rest) - rest).norm();
       if (moved ? way < 0.006 : way > 0.001) continue;
-      const FixedPose fixed(pose(), scene().tables.centre);
-      const IntPoint n = fixed.direction(scene().tables.nx[i], scene().tables.ny[i], scene().tables.nz[i]);
       const Vector3 truth = pose() * move(rest);
-      if (Vector3(n.x, n.y, n.z).dot(truth) <= 0) continue;
-      const IntPoint p = warped_point(scene().tables, scene().patches, *scene().warp, i);
-      out.push_back((Vector3(p.x, p.y, p.z) / kUnitsPerMetre - truth).norm());
+      if (scene().normal(pose(), i).dot(truth) <= 0) continue;
+      out.push_back(scene().off(i, truth));
     }
     std::sort(out.begin(), out.end());
     return out;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> FarSide::shared_;
 
 TEST_F(FarSide, FollowsABend) {
   double with_ties = 0, without = 0;  // sums of medians

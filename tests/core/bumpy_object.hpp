@@ -51,14 +51,6 @@ inline Normal16 normal16(const Vector3& n) {
           static_cast<std::int16_t>(std::lround(n.z() / length * 16384)), 0};
 }
 
-inline Point3f point3f(const Vector3& p) {
-  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
-inline Vector3 vector3(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 /// Distance of the surface from the origin in a unit direction, metres: about 0.1, with three lumps and a
 /// dent.
 inline double bumpy_radius(const Vector3& d) {
@@ -93,7 +85,7 @@ inline TestCloud bumpy_cloud(std::size_t count, double offset = 0) {
     const Vector3 p = surface(d), u = surface(d + 1e-4 * a) - p, v = surface(d + 1e-4 * b) - p;
     Vector3 n(u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(), u.x() * v.y() - u.y() * v.x());
     if (n.dot(d) < 0) n = -n;
-    cloud.positions.push_back(point3f(p));
+    cloud.positions.push_back(to_point(p));
     cloud.normals.push_back(normal16(n));
   }
   return cloud;
@@ -101,7 +93,7 @@ inline TestCloud bumpy_cloud(std::size_t count, double offset = 0) {
 
 inline TestCloud moved(const TestCloud& cloud, const RigidTransform& pose) {
   TestCloud out;
-  for (const Point3f& p : cloud.positions) out.positions.push_back(point3f(pose * vector3(p)));
+  for (const Point3f& p : cloud.positions) out.positions.push_back(to_point(pose * to_vector(p)));
   for (const Normal16& n : cloud.normals)
     out.normals.push_back(normal16(pose.rotation * Vector3(n.x, n.y, n.z)));
   return out;
@@ -129,7 +121,7 @@ class TestModel {
       std::size_t next = at;
       for (std::size_t i = 0; i < n; ++i) {
         if (distance[i] < 0) continue;
-        const Vector3 gap = vector3(cloud.positions[i]) - vector3(cloud.positions[at]);
+        const Vector3 gap = to_vector(cloud.positions[i]) - to_vector(cloud.positions[at]);
         distance[i] = std::min(distance[i], gap.dot(gap));
         if (next == at || distance[i] > distance[next]) next = i;
       }
@@ -151,18 +143,18 @@ class TestModel {
     }
     for (const Point3f& p : sorted.positions)
       for (int k = 0; k < 3; ++k) {
-        h.lowest[k] = std::min(h.lowest[k], vector3(p)(k));
-        h.highest[k] = std::max(h.highest[k], vector3(p)(k));
+        h.lowest[k] = std::min(h.lowest[k], to_vector(p)(k));
+        h.highest[k] = std::max(h.highest[k], to_vector(p)(k));
       }
     for (int k = 0; k < 3; ++k) h.centre[k] = 0.5 * (h.lowest[k] + h.highest[k]);
     for (const Point3f& p : sorted.positions)
-      h.radius = std::max(h.radius, (vector3(p) - Vector3(h.centre[0], h.centre[1], h.centre[2])).norm());
+      h.radius = std::max(h.radius, (to_vector(p) - Vector3(h.centre[0], h.centre[1], h.centre[2])).norm());
     std::vector<std::uint16_t> neighbours(n * limits::kNeighbours, kNoNeighbour);
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
       std::vector<std::pair<double, std::size_t>> near;
       for (std::size_t j = 0; j < n; ++j) {
-        const Vector3 gap = vector3(sorted.positions[i]) - vector3(sorted.positions[j]);
+        const Vector3 gap = to_vector(sorted.positions[i]) - to_vector(sorted.positions[j]);
         if (j != i) near.emplace_back(gap.dot(gap), j);
       }
       std::partial_sort(near.begin(), near.begin() + limits::kNeighbours, near.end());
@@ -222,7 +214,7 @@ inline std::vector<std::uint16_t> depth_picture(const Intrinsics& camera, const 
                                                 int splat, double noise, unsigned seed = 1) {
   std::vector<double> z(table_size(camera.width, camera.height), wall);
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-    const Vector3 p = vector3(cloud.positions[i]);
+    const Vector3 p = to_vector(cloud.positions[i]);
     const Normal16& n = cloud.normals[i];
     if (n.x * p.x() + n.y * p.y() + n.z * p.z() >= 0) continue;
     const int u = static_cast<int>(std::lround(camera.fx * p.x() / p.z() + camera.cx));

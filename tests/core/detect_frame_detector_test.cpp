@@ -47,7 +47,7 @@ std::vector<std::uint16_t> scene(const RigidTransform& pose, unsigned seed = 1) 
   for (int i = 0; i < 20000; ++i) {
     const double z = 1 - 2 * (i + 0.5) / 20000, r = std::sqrt(1 - z * z), a = 2.4 * i;
     const Vector3 d(r * std::cos(a), r * std::sin(a), z);
-    cloud.positions.push_back(testing::point3f(Vector3(-0.25, 0.1, 0.8) + 0.08 * d));
+    cloud.positions.push_back(to_point(Vector3(-0.25, 0.1, 0.8) + 0.08 * d));
     cloud.normals.push_back(testing::normal16(d));
   }
   return testing::depth_picture(small_camera(), cloud, 1.2, 0, 0.0012, seed);
@@ -89,7 +89,7 @@ TEST(FrameDetector, ABallOfTheObjectsSizeIsNotTheObject) {
     for (int i = 0; i < 60000; ++i) {
       const double z = 1 - 2 * (i + 0.5) / 60000, r = std::sqrt(1 - z * z), a = 2.4 * i;
       const Vector3 d(r * std::cos(a), r * std::sin(a), z);
-      ball.positions.push_back(testing::point3f(Vector3(0.05, -0.02, 0.75) + radius * d));
+      ball.positions.push_back(to_point(Vector3(0.05, -0.02, 0.75) + radius * d));
       ball.normals.push_back(testing::normal16(d));
     }
     fixture.show(testing::depth_picture(small_camera(), ball, 1.2, 1, 0.0012, static_cast<unsigned>(k)));

@@ -26,7 +26,7 @@ struct Matches {
       const Vector3 elsewhere(unit(random), unit(random), 1 + unit(random));
       const Vector3 noise = 0.1 * Vector3(unit(random), unit(random), unit(random));
       scene.push_back(i % 3 == 0 ? pose * model.back() + noise : elsewhere);
-      lanes.put(i, testing::point3f(model.back()), testing::point3f(scene.back()));
+      lanes.put(i, to_point(model.back()), to_point(scene.back()));
     }
   }
   [[nodiscard]] double keeps(std::size_t i, std::size_t seed) const {
@@ -63,7 +63,7 @@ TEST(MatchLanes, WhatAPoseExplainsGrowsWithTheDistance) {
   const Matches m;
   std::vector<std::int32_t> hits(kMatches);
   constexpr double kTolerance = 0.01, kGrowth = 0.05;
-  m.lanes.explained_by(FastTransform(m.pose), testing::point3f(m.model[9]), static_cast<float>(kTolerance),
+  m.lanes.explained_by(FastTransform(m.pose), to_point(m.model[9]), static_cast<float>(kTolerance),
                        static_cast<float>(kGrowth), hits);
   std::uint32_t agreeing = 0;
   for (std::size_t i = 0; i < kMatches; ++i) {

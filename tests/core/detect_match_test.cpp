@@ -256,8 +256,8 @@ std::vector<PosedMatch> mixed_matches(std::size_t count, std::size_t stride, con
         testing::test_pose(angle(random), Vector3(small(random), 1, 0.2), Vector3::Zero()).rotation;
     const Matrix3 wobble =
         testing::test_pose(small(random), Vector3(1, small(random), 0.3), Vector3::Zero()).rotation;
-    m.model = testing::point3f(p);
-    m.scene = testing::point3f(q);
+    m.model = to_point(p);
+    m.scene = to_point(q);
     m.model_frame = frame_of(axes);
     m.scene_frame =
         right

@@ -110,7 +110,7 @@ testing::TestCloud box(int side, double bulge) {
       n(axis) = sign;
       n(next) = 2 * bulge * a * (1 - b * b) / half(next);
       n(last) = 2 * bulge * b * (1 - a * a) / half(last);
-      cloud.positions.push_back(testing::point3f(p));
+      cloud.positions.push_back(to_point(p));
       cloud.normals.push_back(testing::normal16(n));
     }
   return cloud;
@@ -158,8 +158,8 @@ TEST(PlainBodyFit, NoFacesAreNearerToABoxThanAModelThatHasThemItself) {
 TEST(SelfLikeness, ABallLooksAlikeFromEverywhereTheObjectOnlyUnmoved) {
   testing::TestCloud ball = testing::bumpy_cloud(1500);
   for (std::size_t i = 0; i < ball.positions.size(); ++i) {
-    const Vector3 d = testing::vector3(ball.positions[i]).normalized();
-    ball.positions[i] = testing::point3f(0.1 * d);
+    const Vector3 d = to_vector(ball.positions[i]).normalized();
+    ball.positions[i] = to_point(0.1 * d);
     ball.normals[i] = testing::normal16(d);
   }
   const testing::TestModel round(ball, 64);

@@ -59,7 +59,7 @@ TestCloud limb(bool all) {
       const double radius = 0.008 + 0.003 * std::exp(-along * along / 0.0004);
       const Vector3 normal(0, std::cos(angle), std::sin(angle));
       if (!all && normal.z() < 0) continue;
-      cloud.positions.push_back(testing::point3f(Vector3(along, 8 * along * along, 0) + radius * normal));
+      cloud.positions.push_back(to_point(Vector3(along, 8 * along * along, 0) + radius * normal));
       cloud.normals.push_back(testing::normal16(normal));
     }
   return cloud;
@@ -78,7 +78,7 @@ TEST(Shot, WhatFacesAwayDoesNotCount) {
   ASSERT_TRUE(grids[1].build(front.positions, 0.02));
   for (int k = -4; k <= 4; ++k) {
     const double along = 0.005 * k;
-    const Point3f at = testing::point3f(Vector3(along, 8 * along * along, 0.008));
+    const Point3f at = to_point(Vector3(along, 8 * along * along, 0.008));
     Descriptor a, b;
     LocalFrame f, g;
     ASSERT_TRUE(describer.describe_at(whole.view(), grids[0], at, 0.03, a, f));

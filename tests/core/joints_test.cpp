@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/deform/strain.hpp"
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
@@ -16,16 +16,13 @@ using synthetic::pose_at;
 using synthetic::TrackScene;
 using synthetic::usual_pose;
 
-class FindJoints : public ::testing::Test {
+class FindJoints : public synthetic::SharedScene<synthetic::two_part_bar> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     scene().place(usual_pose());
     scene().warp->pose.fill(usual_pose());
     scene().warp->home.fill(0);
   }
-  static TrackScene& scene() { return *shared_; }
   static void add_region(std::size_t id, std::int8_t parent) {
     TrackedRegion& region = scene().regions[id];
     region.alive = true;
@@ -43,11 +40,7 @@ class FindJoints : public ::testing::Test {
     EXPECT_TRUE(find_joint(scene().patches, *scene().warp, a, b, joint));
     return joint;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> FindJoints::shared_;
 
 TEST_F(FindJoints, TiesAPartToItsParentAndTheBaseToNothing) {
   add_region(1, 0);

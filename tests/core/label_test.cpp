@@ -5,24 +5,20 @@
 #include <map>
 
 #include "core/track/sight.hpp"
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::Picture;
-using synthetic::TrackScene;
 using synthetic::usual_pose;
 
-class Label : public ::testing::Test {
+class Label : public synthetic::SharedScene<synthetic::bumpy_body> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     scene().points.reset();
     scene().place(usual_pose());
   }
-  static TrackScene& scene() { return *shared_; }
   std::map<int, std::size_t> labels() {
     std::map<int, std::size_t> count;
     for (const std::int8_t l : scene().points.label) ++count[l];
@@ -42,11 +38,7 @@ class Label : public ::testing::Test {
     for (int i = 0; i < count; ++i) counts = scene().label_now(with_memory);
     return counts;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> Label::shared_;
 
 TEST_F(Label, AllThatIsSeenAgreesAtTheTruePose) {
   scene().see_body(usual_pose());

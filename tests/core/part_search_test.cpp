@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
@@ -15,12 +15,8 @@ using synthetic::usual_pose;
 constexpr double kLimit = 0.004;
 
 /// A bar along x whose patches the warp has turned about the y axis.
-class PartSearch : public ::testing::Test {
+class PartSearch : public synthetic::SharedScene<synthetic::two_part_bar> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar()); }
-  static void TearDownTestSuite() { shared_.reset(); }
-  static TrackScene& scene() { return *shared_; }
-
   /// Where the bar is at x: the middle line bends by `curvature(x)` radians a metre.
   template <typename Curvature>
   bool find(const Curvature& curvature) {
@@ -49,11 +45,7 @@ class PartSearch : public ::testing::Test {
   }
 
   RigidPart part_;
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> PartSearch::shared_;
 
 TEST_F(PartSearch, FindsWhatTurnsAtAJoint) {
   // 0.3 radians within 2 cm

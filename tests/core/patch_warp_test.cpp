@@ -5,25 +5,21 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::Picture;
-using synthetic::TrackScene;
 using synthetic::usual_pose;
 
-class Warp : public ::testing::Test {
+class Warp : public synthetic::SharedScene<synthetic::bumpy_body> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::bumpy_body()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     scene().points.reset();
     scene().place(usual_pose());
     scene().warp->reset(usual_pose());
   }
-  static TrackScene& scene() { return *shared_; }
 
   /// A dent of 6 cm radius, `depth` metres deep, pressed away from the camera where the body bulges towards
   /// it.
@@ -57,20 +53,13 @@ class Warp : public ::testing::Test {
       const Vector3 rest = scene().rest(i);
       const Vector3 truth = usual_pose() * pressed(rest, depth);
       if (((pressed(rest, depth) - rest).norm() > 0.006) != moved) continue;
-      const FixedPose pose(usual_pose(), scene().tables.centre);
-      const IntPoint n = pose.direction(scene().tables.nx[i], scene().tables.ny[i], scene().tables.nz[i]);
-      if (Vector3(n.x, n.y, n.z).dot(truth) / 16384 > -0.5 * truth.norm()) continue;
-      const IntPoint p = warped_point(scene().tables, scene().patches, *scene().warp, i);
-      out.push_back((Vector3(p.x, p.y, p.z) / kUnitsPerMetre - truth).norm());
+      if (scene().normal(usual_pose(), i).dot(truth) > -0.5 * truth.norm()) continue;
+      out.push_back(scene().off(i, truth));
     }
     std::sort(out.begin(), out.end());
     return out;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> Warp::shared_;
 
 TEST_F(Warp, StaysWithTheRegionWhereNothingDeforms) {
   for (const double noise : {0.0, 0.001}) {

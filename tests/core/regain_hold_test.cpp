@@ -2,21 +2,16 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::pose_at;
-using synthetic::TrackScene;
 using synthetic::usual_pose;
 
-class RegainHold : public ::testing::Test {
+class RegainHold : public synthetic::SharedScene<synthetic::two_part_bar> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar()); }
-  static void TearDownTestSuite() { shared_.reset(); }
-  static TrackScene& scene() { return *shared_; }
-
   void SetUp() override {
     scene().points.reset();
     scene().place(usual_pose());
@@ -39,11 +34,7 @@ class RegainHold : public ::testing::Test {
     for (const std::uint8_t evidence : scene().points.evidence) count += evidence == 0 ? 1U : 0U;
     return count;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> RegainHold::shared_;
 
 TEST_F(RegainHold, GoesWhereAllOfTheObjectWent) {
   const RigidTransform motion = pose_at({0.02, 0.005, 0.01}, {0, 1, 0}, 0.05);

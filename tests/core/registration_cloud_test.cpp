@@ -31,7 +31,7 @@ std::vector<Point3f> cluttered(const RigidTransform& pose, bool object = true) {
     for (int i = 0; i < 900; ++i) {
       const double z = 1 - 2 * (i + 0.5) / 900, r = std::sqrt(1 - z * z), a = 2.4 * i;
       const Vector3 d(r * std::cos(a), r * std::sin(a), z);
-      points.push_back(testing::point3f(Vector3(0.35 * ball - 0.3, 0.45, 0.9) + (0.05 + 0.02 * ball) * d));
+      points.push_back(to_point(Vector3(0.35 * ball - 0.3, 0.45, 0.9) + (0.05 + 0.02 * ball) * d));
     }
   return points;
 }
@@ -58,10 +58,10 @@ TEST(CloudRegistration, FindsTheObjectAndLabelsItRigid) {
             static_cast<long>(0.99 * static_cast<double>(n)));
   for (std::size_t i = 0; i < n; ++i) {
     if (instance.labels[i] != 0) continue;
-    EXPECT_LT((testing::vector3(instance.positions[i]) -
-               usual_pose() * testing::vector3(testing::bumpy_model().positions()[i]))
-                  .norm(),
-              0.001);
+    EXPECT_LT(
+        (to_vector(instance.positions[i]) - usual_pose() * to_vector(testing::bumpy_model().positions()[i]))
+            .norm(),
+        0.001);
     ASSERT_LT(instance.matches[i], static_cast<std::int32_t>(scene.size()));
   }
   EXPECT_GT(result.scene_keypoints, 1000U);
@@ -88,9 +88,9 @@ TEST(CloudRegistration, FindsADentAndItsPoints) {
   const Vector3 poke = Vector3(0.5, 0.2, -1).normalized();
   std::vector<bool> dented;
   for (Point3f& p : object.positions) {
-    const Vector3 d = testing::vector3(p).normalized();
+    const Vector3 d = to_vector(p).normalized();
     const double depth = 0.03 * std::max(0.0, 1 - (d - poke).squaredNorm() / 0.16);
-    p = testing::point3f(testing::vector3(p) - depth * d);
+    p = to_point(to_vector(p) - depth * d);
     dented.push_back(depth > 2 * testing::bumpy_model().spacing());
   }
   const std::vector<Point3f> scene = testing::moved(object, pose).positions;
@@ -102,7 +102,7 @@ TEST(CloudRegistration, FindsADentAndItsPoints) {
   int inside = 0, right = 0, false_deformed = 0;
   std::vector<int> uses(scene.size(), 0);
   for (std::size_t i = 0; i < testing::bumpy_model().size(); ++i) {
-    const Vector3 d = testing::vector3(testing::bumpy_model().positions()[i]).normalized();
+    const Vector3 d = to_vector(testing::bumpy_model().positions()[i]).normalized();
     const double square = (d - poke).squaredNorm();
     const double depth = 0.03 * std::max(0.0, 1 - square / 0.16);
     if (depth > 2 * testing::bumpy_model().spacing()) {
@@ -147,8 +147,8 @@ TEST(CloudRegistration, BallsOfTheObjectsSizeAreNotTheObject) {
     for (int ball = 0; ball < 3; ++ball)
       for (int i = 0; i < 3000; ++i) {
         const double z = 1 - 2 * (i + 0.5) / 3000, r = std::sqrt(1 - z * z), a = 2.4 * i;
-        scene.push_back(testing::point3f(Vector3(0.35 * ball - 0.3, 0.45, 0.9) +
-                                         radius * Vector3(r * std::cos(a), r * std::sin(a), z)));
+        scene.push_back(to_point(Vector3(0.35 * ball - 0.3, 0.45, 0.9) +
+                                 radius * Vector3(r * std::cos(a), r * std::sin(a), z)));
       }
     RegistrationFixture fixture(scene.size());
     EXPECT_EQ(fixture.registration.register_cloud(scene).outcome, RegistrationOutcome::not_found) << radius;
@@ -184,7 +184,7 @@ TEST(CloudRegistration, ClearAnswersToBadClouds) {
   for (int i = 0; i < 3000; ++i) line.push_back({0.0003F * static_cast<float>(i), 0, 0});
   for (int i = 0; i < 3000; ++i) {
     const double z = 1 - 2 * (i + 0.5) / 3000, r = std::sqrt(1 - z * z), a = 2.4 * i;
-    ball.push_back(testing::point3f(0.12 * Vector3(r * std::cos(a), r * std::sin(a), z)));
+    ball.push_back(to_point(0.12 * Vector3(r * std::cos(a), r * std::sin(a), z)));
   }
   EXPECT_EQ(outcome(plane), RegistrationOutcome::flat);
   EXPECT_EQ(outcome(line), RegistrationOutcome::flat);

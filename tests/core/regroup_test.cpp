@@ -4,26 +4,22 @@
 
 #include <algorithm>
 
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::Picture;
-using synthetic::TrackScene;
 
 /// A bar that bends at its middle, seen from its side.
-class Hinge : public ::testing::Test {
+class Hinge : public synthetic::SharedScene<synthetic::two_part_bar, 5> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar(), 0.005); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     scene().points.reset();
     scene().place(pose());
     scene().warp->reset(pose());
     settings_.fewest_points = 40;
   }
-  static TrackScene& scene() { return *shared_; }
   static RigidTransform pose() { return synthetic::pose_at({0, 0, 0.6}, {1, 0, 0}, 0.4); }
   static Matrix3 bend(double angle) { return synthetic::turn({0, 1, 0.3}, angle); }
 
@@ -54,11 +50,7 @@ class Hinge : public ::testing::Test {
 
   RegroupSettings settings_;
   RegroupState state_;
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> Hinge::shared_;
 
 TEST_F(Hinge, MakesTwoRegionsOfHalvesThatMoveApart) {
   for (const double angle : {0.4, -0.4}) {

@@ -7,25 +7,21 @@
 #include <vector>
 
 #include "core/track/joints.hpp"
-#include "tests/core/track_scene.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
 
-using synthetic::TrackScene;
 using synthetic::usual_pose;
 
 constexpr double kMaterial = 0.5;
 
-class StrainTest : public ::testing::Test {
+class StrainTest : public synthetic::SharedScene<synthetic::two_part_bar> {
  protected:
-  static void SetUpTestSuite() { shared_ = std::make_unique<TrackScene>(synthetic::two_part_bar()); }
-  static void TearDownTestSuite() { shared_.reset(); }
   void SetUp() override {
     warp().home.fill(0);
     move_all(usual_pose());
   }
-  static TrackScene& scene() { return *shared_; }
   static PatchWarp& warp() { return *scene().warp; }
   static const PatchTables& patches() { return scene().patches; }
 
@@ -64,11 +60,7 @@ class StrainTest : public ::testing::Test {
     }
     return sum;
   }
-
- private:
-  static std::unique_ptr<TrackScene> shared_;
 };
-std::unique_ptr<TrackScene> StrainTest::shared_;
 
 TEST_F(StrainTest, IsNoneWhereAllMovesAsOne) {
   EXPECT_LT(most(sorted_strains()), 1e-6);

@@ -22,7 +22,7 @@ Geometry closed_surface(std::size_t columns, std::size_t rows,
       const double around = 2 * std::numbers::pi * static_cast<double>(c) / static_cast<double>(columns);
       const double up = std::numbers::pi * (static_cast<double>(r) / static_cast<double>(rows) - 0.5);
       const Vector3 p = place(around, up);
-      g.vertices.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+      g.vertices.push_back(to_point(p));
     }
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t c = 0; c < columns; ++c) {
@@ -37,10 +37,6 @@ Geometry closed_surface(std::size_t columns, std::size_t rows,
 
 double power(double x, double exponent) {
   return std::copysign(std::pow(std::fabs(x), exponent), x);
-}
-
-Vector3 vertex_of(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
 }
 
 }  // namespace
@@ -106,7 +102,7 @@ void Picture::draw(const Geometry& mesh, const RigidTransform& pose,
                    const std::function<Vector3(const Vector3&)>& move) {
   std::vector<Vector3> seen;  // u, v, 1/z
   for (const Point3f& vertex : mesh.vertices) {
-    const Vector3 p = pose * move(vertex_of(vertex));
+    const Vector3 p = pose * move(to_vector(vertex));
     seen.emplace_back(camera_.fx * p.x() / p.z() + camera_.cx, camera_.fy * p.y() / p.z() + camera_.cy,
                       1 / p.z());
   }

@@ -95,7 +95,18 @@ class TrackScene {
   }
   [[nodiscard]] Vector3 rest(std::size_t i) const {
     const Point3f& p = model.positions()[i];
-    return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
+    return to_vector(p);
+  }
+  /// The normal of point i under `pose`, unit but for rounding.
+  [[nodiscard]] Vector3 normal(const RigidTransform& pose, std::size_t i) const {
+    const FixedPose fixed(pose, tables.centre);
+    const IntPoint n = fixed.direction(tables.nx[i], tables.ny[i], tables.nz[i]);
+    return Vector3(n.x, n.y, n.z) / 16384;
+  }
+  /// How far off `truth` the warp puts point i, metres.
+  [[nodiscard]] double off(std::size_t i, const Vector3& truth) const {
+    const IntPoint p = warped_point(tables, patches, *warp, i);
+    return (Vector3(p.x, p.y, p.z) / kUnitsPerMetre - truth).norm();
   }
 
   Geometry mesh;

@@ -120,11 +120,9 @@ TEST_F(TrackerTest, FollowsAMovingObjectFromAGivenPose) {
       observed += r.labels[i] >= 0 ? 1U : 0U;
       ASSERT_EQ(r.labels[i] >= 0, r.matches[i] >= 0 || r.labels[i] >= 0);
       if (r.labels[i] < 0) continue;
-      const Vector3 p(static_cast<double>(r.positions[i].x), static_cast<double>(r.positions[i].y),
-                      static_cast<double>(r.positions[i].z));
+      const Vector3 p = to_vector(r.positions[i]);
       const Point3f& rest = model().positions()[i];
-      const Vector3 truth = pose(frame) * Vector3(static_cast<double>(rest.x), static_cast<double>(rest.y),
-                                                  static_cast<double>(rest.z));
+      const Vector3 truth = pose(frame) * to_vector(rest);
       ASSERT_LT((p - truth).norm(), 0.004);
     }
     EXPECT_GT(observed, model().size() / 5);

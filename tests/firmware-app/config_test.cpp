@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/temporary_folder.hpp"
+
 namespace pliant {
 namespace {
 
@@ -108,8 +110,7 @@ TEST(Config, FailureLeavesTheConfigAlone) {
 }
 
 TEST(Config, PathsAreRelativeToTheFile) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "pliant_config_test";
-  std::filesystem::create_directories(folder);
+  const test::TemporaryFolder folder;
   std::ofstream(folder / "p.toml")
       << "model = \"a.model\"\nsource = \"recording:rec\"\n[sensor]\ndescription = "
          "\"/abs/s.toml\"\n";
@@ -118,7 +119,6 @@ TEST(Config, PathsAreRelativeToTheFile) {
   EXPECT_EQ(config->model, (folder / "a.model").string());
   EXPECT_EQ(config->source, "recording:" + (folder / "rec").string());
   EXPECT_EQ(config->sensor.description, "/abs/s.toml");
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Config, MissingFileIsBadInput) {

@@ -8,6 +8,8 @@
 #include <sstream>
 #include <vector>
 
+#include "tests/temporary_folder.hpp"
+
 namespace pliant {
 namespace {
 
@@ -22,13 +24,10 @@ class FrameFilesTest : public testing::Test {
     result_.labels = labels_;
     result_.matches = matches_;
     result_.residuals = residuals_;
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
   }
-  ~FrameFilesTest() override { fs::remove_all(folder_); }
 
-  fs::path folder_ = fs::path(testing::TempDir()) /
-                     (std::string("pliant_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+  const test::TemporaryFolder made_;
+  fs::path folder_ = made_.path();
   std::vector<Point3f> rest_ = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}};
   std::vector<std::int8_t> labels_ = {0, kDeformed, kNotObserved};
   std::vector<std::int32_t> matches_ = {7, -1, -1};

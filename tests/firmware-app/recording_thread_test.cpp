@@ -8,6 +8,7 @@
 #include "drivers/recording/depth_list.hpp"
 #include "drivers/simulated/simulated.hpp"
 #include "firmware-app/measure/clock.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pliant {
 namespace {
@@ -15,18 +16,12 @@ namespace {
 class Recording : public testing::Test {
  protected:
   Recording() {
-    std::string name = (std::filesystem::temp_directory_path() / "pliant_recording_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
     auto made = RecordingWriter::create(folder_ / "r", {kCamera, {}});
     EXPECT_TRUE(made);
     writer_ = std::move(*made);
   }
-  ~Recording() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
   static constexpr Intrinsics kCamera{640, 480, 570, 570, 320, 240, 1000};
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
   std::unique_ptr<RecordingWriter> writer_;
 };
 

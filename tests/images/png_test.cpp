@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/temporary_folder.hpp"
+
 namespace pliant {
 namespace {
 
@@ -14,14 +16,6 @@ namespace fs = std::filesystem;
 
 class PngTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("pliant_png_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// A picture whose every pixel tells its place.
   static GreyImage16 pattern(int width, int height) {
     GreyImage16 image{width, height, {}};
@@ -46,7 +40,8 @@ class PngTest : public testing::Test {
     return outcome.error().message;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder made_;
+  fs::path folder_ = made_.path();
 };
 
 TEST_F(PngTest, WritesAndReadsBackEveryPixel) {

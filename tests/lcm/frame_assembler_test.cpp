@@ -124,13 +124,10 @@ TEST(FrameAssembler, PointsArePlacedByTheirRegionOrByThemselves) {
   place_points(assembler.frame(), model, places);
   ASSERT_EQ(places.size(), sample.rest.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
-    Vector3 expected(static_cast<double>(sample.positions[i].x), static_cast<double>(sample.positions[i].y),
-                     static_cast<double>(sample.positions[i].z));
+    Vector3 expected = to_vector(sample.positions[i]);
     if (sample.labels[i] != kDeformed) {
       const std::size_t region = sample.labels[i] < 0 ? 0 : static_cast<std::size_t>(sample.labels[i]);
-      expected = sample.regions[region].pose * Vector3(static_cast<double>(sample.rest[i].x),
-                                                       static_cast<double>(sample.rest[i].y),
-                                                       static_cast<double>(sample.rest[i].z));
+      expected = sample.regions[region].pose * to_vector(sample.rest[i]);
     }
     ASSERT_NEAR(static_cast<double>(places[i].x), expected.x(), 1e-6) << i;
     ASSERT_NEAR(static_cast<double>(places[i].z), expected.z(), 1e-6) << i;

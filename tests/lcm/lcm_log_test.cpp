@@ -11,21 +11,13 @@
 
 #include "drivers/lcm/depth_log.hpp"
 #include "drivers/lcm/depth_messages.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pliant {
 namespace {
 
 class Log : public testing::Test {
  protected:
-  Log() {
-    std::string name = (std::filesystem::temp_directory_path() / "pliant_log_XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    file_ = folder_ / "log";
-  }
-  ~Log() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
   /// Pictures of 320 x 240, four messages each, by LCM's own writer; `left_out` of all messages is not sent.
   void write(int pictures, int left_out = -1) {
     lcm_t* lcm = lcm_create(("file://" + file_.string() + "?mode=w").c_str());
@@ -47,10 +39,17 @@ class Log : public testing::Test {
     text << std::ifstream(file_, std::ios::binary).rdbuf();
     return text.str();
   }
+  static int events_in(LcmLog& log) {
+    LcmLogEvent event;
+    int read = 0;
+    while (log.next(event)) ++read;
+    return read;
+  }
   void write_bytes(const std::string& text) const { std::ofstream(file_, std::ios::binary) << text; }
 
   static constexpr Intrinsics kCamera{320, 240, 285, 286, 159.5, 119.5, 1000};
-  std::filesystem::path folder_, file_;
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "log";
 };
 
 TEST_F(Log, EveryMessageIsReadAsItWasSent) {
@@ -100,10 +99,7 @@ TEST_F(Log, AFileCutShortEndsAtItsLastWholeEvent) {
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) - 1);
   Result<LcmLog> log = LcmLog::open(file_);
   ASSERT_TRUE(log);
-  LcmLogEvent event;
-  int read = 0;
-  while (log->next(event)) ++read;
-  EXPECT_EQ(read, 7);
+  EXPECT_EQ(events_in(*log), 7);
   EXPECT_EQ(log->damages(), 1);
 }
 
@@ -115,10 +111,7 @@ TEST_F(Log, DamagedStretchesArePassedOver) {
   write_bytes("\xED\xA1\xDA\x01 and rubbish" + text + std::string("\xED\xA1\xDA\x01\0\0", 6));
   Result<LcmLog> log = LcmLog::open(file_);
   ASSERT_TRUE(log);
-  LcmLogEvent event;
-  int read = 0;
-  while (log->next(event)) ++read;
-  EXPECT_EQ(read, 7);
+  EXPECT_EQ(events_in(*log), 7);
   EXPECT_EQ(log->damages(), 3);
 }
 

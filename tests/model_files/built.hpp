@@ -39,10 +39,7 @@ inline Made make(const Geometry& geometry, const ModelBuildSettings& settings = 
   return made;
 }
 
-inline Vector3 vector_of(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-inline Vector3 vector_of(const Normal16& n) {
+inline Vector3 to_vector(const Normal16& n) {
   return Vector3(n.x, n.y, n.z) / 16384.0;
 }
 
@@ -51,7 +48,7 @@ template <typename Outward>
 double share_outward(const ModelView& model, Outward outward) {
   std::size_t good = 0;
   for (std::size_t i = 0; i < model.size(); ++i)
-    good += outward(vector_of(model.positions()[i]), vector_of(model.normals()[i])) > 0 ? 1U : 0U;
+    good += outward(to_vector(model.positions()[i]), to_vector(model.normals()[i])) > 0 ? 1U : 0U;
   return static_cast<double>(good) / static_cast<double>(model.size());
 }
 

@@ -40,7 +40,7 @@ TEST(ModelBuilder, SamplesACoarseMeshEvenlyOnItsSurface) {
   double worst = 0;
   std::size_t on_top = 0;
   for (const Point3f& p : made.view().positions()) {
-    worst = std::max(worst, off_box(vector_of(p), size));
+    worst = std::max(worst, off_box(to_vector(p), size));
     on_top += std::fabs(static_cast<double>(p.z) - size.z()) < 1e-6 ? 1U : 0U;
   }
   EXPECT_LT(worst, 0.0001);
@@ -70,7 +70,7 @@ TEST(ModelBuilder, AnyPrefixIsAnEvenSampling) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       double best = 1;
       for (std::size_t j = 0; j < prefix; ++j)
-        if (i != j) best = std::min(best, (vector_of(points[i]) - vector_of(points[j])).norm());
+        if (i != j) best = std::min(best, (to_vector(points[i]) - to_vector(points[j])).norm());
       if (i < prefix)
         nearest = std::min(nearest, best);
       else
@@ -151,7 +151,7 @@ TEST(ModelBuilder, TheHeaderFitsTheContents) {
   EXPECT_EQ(h.keypoint_count, limits::kMaxModelKeypoints);
   EXPECT_GT(h.support_radius, 3 * h.spacing);
   for (const Point3f& p : made.view().positions())
-    EXPECT_LE((vector_of(p) - made.view().centre()).norm(), h.radius * (1 + 1e-12));
+    EXPECT_LE((to_vector(p) - made.view().centre()).norm(), h.radius * (1 + 1e-12));
   std::size_t described = 0;
   for (const Descriptor& d : made.view().descriptors())
     described += std::any_of(d.bins.begin(), d.bins.end(), [](std::int8_t b) { return b > 0; }) ? 1U : 0U;

@@ -20,7 +20,7 @@ TEST(NeighbourGraph, NearestFirstAndNeverItself) {
       EXPECT_EQ(ended, n == kNoNeighbour);
       if (ended) continue;
       EXPECT_NE(n, i);
-      const double distance = (vector_of(m.positions()[i]) - vector_of(m.positions()[n])).norm();
+      const double distance = (to_vector(m.positions()[i]) - to_vector(m.positions()[n])).norm();
       EXPECT_GE(distance, before * (1 - 1e-6));
       before = distance;
     }

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Point3f to_point(const Vector3& p) {
-  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
 }  // namespace
 
 Geometry patch(std::size_t columns, std::size_t rows, const std::function<Vector3(double, double)>& place) {

@@ -34,7 +34,7 @@ TEST_P(SharedModel, IsBuiltWhole) {
       const Point3f& v = g->vertices[k];
       if (v.x != p.x || v.y != p.y || v.z != p.z) continue;
       ++compared;
-      agree += vector_of(g->normals[k]).dot(vector_of(made.view().normals()[i])) > 0 ? 1U : 0U;
+      agree += to_vector(g->normals[k]).dot(to_vector(made.view().normals()[i])) > 0 ? 1U : 0U;
       break;
     }
   }

@@ -79,7 +79,7 @@ TEST(SpringNetwork, EveryPointMovesWithThePatchesAroundIt) {
     Vector3 sum = Vector3::Zero();
     for (std::size_t j = 0; j < 4; ++j)
       sum += blend.weight[j] * to_vector(model.patches()[blend.patch[j]].centre) / 128;
-    EXPECT_LT((sum - vector_of(model.positions()[i])).norm(), 2 * model.patch_radius());
+    EXPECT_LT((sum - to_vector(model.positions()[i])).norm(), 2 * model.patch_radius());
     led_by_own += blend.patch[0] == model.patch_of()[i] ? 1U : 0U;
   }
   EXPECT_GT(led_by_own, model.size() * 3 / 4);

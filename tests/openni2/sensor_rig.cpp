@@ -18,8 +18,6 @@
 namespace pliant::test {
 
 SensorRig::SensorRig(const std::string& simulated) {
-  std::string name = (std::filesystem::temp_directory_path() / "pliant_sensor_XXXXXX").string();
-  folder_ = mkdtemp(name.data());
   Result<std::unique_ptr<SimulatedSource>> source = open_simulated(simulated);
   EXPECT_TRUE(source);
   const Intrinsics& camera = (*source)->intrinsics();
@@ -51,8 +49,6 @@ SensorRig::SensorRig(const std::string& simulated) {
 SensorRig::~SensorRig() {
   unsetenv(kVirtualSensorVariable);  // NOLINT(concurrency-mt-unsafe): after every thread
   munmap(control_, bytes_);
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 const std::uint16_t* SensorRig::frame(int index) const {

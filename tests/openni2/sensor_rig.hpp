@@ -7,6 +7,7 @@
 
 #include "drivers/depth_source/depth_source.hpp"
 #include "tests/openni2/virtual_sensor.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pliant::test {
 
@@ -19,13 +20,13 @@ class SensorRig {
   SensorRig(const SensorRig&) = delete;
   SensorRig& operator=(const SensorRig&) = delete;
   [[nodiscard]] SensorControl& control() const { return *control_; }
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
   [[nodiscard]] const std::uint16_t* frame(int index) const;
   /// Records `frames` frames with the library's own recorder.
   void record_oni(const std::filesystem::path& file, int frames) const;
 
  private:
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
   SensorControl* control_ = nullptr;
   std::size_t bytes_ = 0;
 };

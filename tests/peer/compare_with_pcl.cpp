@@ -32,9 +32,7 @@ struct Index {
 };
 
 Point3f carried(const RigidTransform& pose, const Point3f& p) {
-  const Vector3 q =
-      pose * Vector3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-  return {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z())};
+  return to_point(pose * to_vector(p));
 }
 
 /// Outward directions of the scene's points: the normal of the model's nearest point under the true pose,
@@ -53,7 +51,7 @@ peer::Points true_signs(const ModelView& model, const RigidTransform& pose, std:
     }
     const Normal16& n = model.normals()[i];
     const Vector3 d = pose.rotation * Vector3(n.x, n.y, n.z);
-    signs.push_back({static_cast<float>(d.x()), static_cast<float>(d.y()), static_cast<float>(d.z())});
+    signs.push_back(to_point(d));
   }
   return signs;
 }

@@ -15,14 +15,6 @@
 namespace pliant {
 namespace {
 
-Vector3 vector3(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
-Point3f point3f(const Vector3& p) {
-  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
 constexpr int kSide = 480;        // pixels, of each of the two pictures
 constexpr int kKeyWidth = 440;    // pixels before them
 constexpr double kDotRadius = 2;  // pixels, of a scene point
@@ -32,7 +24,7 @@ constexpr double kUnits = 10000;  // of the drawn depth, a metre
 void draw_points(std::span<const Point3f> points, const RigidTransform& pose, const Intrinsics& camera,
                  int first, int last, std::vector<std::uint16_t>& depth) {
   for (const Point3f& point : points) {
-    const Vector3 p = pose * vector3(point);
+    const Vector3 p = pose * to_vector(point);
     if (!(p.z() > 0 && p.z() * kUnits < 65535)) continue;
     const double u = camera.fx * p.x() / p.z() + camera.cx, v = camera.fy * p.y() / p.z() + camera.cy;
     const auto reading = static_cast<std::uint16_t>(p.z() * kUnits);
@@ -50,10 +42,10 @@ void draw_points(std::span<const Point3f> points, const RigidTransform& pose, co
 /// `up` at the top.
 RigidTransform looking_at(std::span<const Point3f> points, const Vector3& front, const Vector3& up) {
   Vector3 mean = Vector3::Zero();
-  for (const Point3f& p : points) mean += vector3(p);
+  for (const Point3f& p : points) mean += to_vector(p);
   mean /= static_cast<double>(points.size());
   Matrix3 spread = Matrix3::Zero();
-  for (const Point3f& p : points) spread += (vector3(p) - mean) * (vector3(p) - mean).transpose();
+  for (const Point3f& p : points) spread += (to_vector(p) - mean) * (to_vector(p) - mean).transpose();
   const SymmetricEigen eigen = symmetric_eigen(spread);
   Vector3 z = eigen.vectors.col(0);
   if (z.dot(front) > 0) z = -z;
@@ -75,7 +67,7 @@ void clear_around(std::span<const Point3f> points, const Intrinsics& camera, int
   constexpr int kAround = 5;  // pixels: between the points too
   for (const Point3f& point : points) {
     if (!(point.z > 0)) continue;
-    const Vector3 p = vector3(point);
+    const Vector3 p = to_vector(point);
     const int u = static_cast<int>(camera.fx * p.x() / p.z() + camera.cx),
               v = static_cast<int>(camera.fy * p.y() / p.z() + camera.cy);
     for (int y = std::max(0, v - kAround); y <= std::min(camera.height - 1, v + kAround); ++y)
@@ -114,21 +106,21 @@ int draw(char** argv) {
     if (found.labels[i] != kDeformed) continue;
     const Normal16& n = model.view.normals()[i];
     front += base.rotation * Vector3(n.x, n.y, n.z);
-    displacement[i] =
-        static_cast<float>((vector3(found.positions[i]) - base * vector3(model.view.positions()[i])).norm());
+    displacement[i] = static_cast<float>(
+        (to_vector(found.positions[i]) - base * to_vector(model.view.positions()[i])).norm());
   }
   const RigidTransform camera =
       looking_at(found.positions, front, base.rotation.col(1));  // meshes stand along y
   std::vector<Point3f> points;
   std::vector<std::int8_t> labels(found.labels.begin(), found.labels.end());
   for (std::size_t i = 0; i < model.view.size(); ++i) {
-    points.push_back(point3f(camera * vector3(found.positions[i])));
+    points.push_back(to_point(camera * to_vector(found.positions[i])));
     // What faces away would shine through.
     const Normal16& n = model.view.normals()[i];
     const std::size_t region = found.labels[i] > 0 ? static_cast<std::size_t>(found.labels[i]) : 0;
     const Vector3 normal =
         camera.rotation * found.regions[region].transform.rotation * Vector3(n.x, n.y, n.z);
-    if (normal.dot(vector3(points.back())) > 0) points.back().z = -1;
+    if (normal.dot(to_vector(points.back())) > 0) points.back().z = -1;
   }
   SceneView view;
   view.positions = points;

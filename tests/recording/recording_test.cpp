@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/images/png.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pliant {
 namespace {
@@ -22,13 +23,9 @@ class RecordingTest : public testing::Test {
   static constexpr int kWidth = 64, kHeight = 48;
 
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / (std::string("pliant_recording_") +
-                                              testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
     fs::create_directories(folder_ / "depth");
     put("camera.toml", "width = 64\nheight = 48\nfx = 60\nfy = 60\ncx = 32\ncy = 24\ndepth_scale = 1000\n");
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void put(const char* name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
@@ -66,7 +63,8 @@ class RecordingTest : public testing::Test {
     return all;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder made_;
+  fs::path folder_ = made_.path();
 };
 
 TEST_F(RecordingTest, DeliversEveryFrameInOrder) {

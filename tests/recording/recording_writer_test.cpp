@@ -7,6 +7,7 @@
 
 #include "drivers/recording/recording.hpp"
 #include "drivers/recording/text_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pliant {
 namespace {
@@ -16,14 +17,10 @@ namespace fs = std::filesystem;
 class RecordingWriterTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("pliant_writer_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
     camera_.intrinsics = {40, 30, 50, 51, 20, 15, 8000};
     camera_.sensor.noise_floor = 0.0007;
     pixels_.resize(std::size_t{50} * 30);
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// A frame with gaps between its rows.
   DepthFrame frame(int i) {
@@ -36,7 +33,8 @@ class RecordingWriterTest : public testing::Test {
     return text ? *text : text.error().message;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder made_;
+  fs::path folder_ = made_ / "recording";
   CameraFile camera_;
   std::vector<std::uint16_t> pixels_;
 };

@@ -13,21 +13,17 @@
 namespace pliant::simulated {
 namespace {
 
-Vector3 vector(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 void check(const Geometry& mesh) {
   ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
   double volume = 0;
   std::size_t against = 0;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : mesh.triangles) {
-    const Vector3 a = vector(mesh.vertices[t[0]]);
-    const Vector3 b = vector(mesh.vertices[t[1]]);
-    const Vector3 c = vector(mesh.vertices[t[2]]);
+    const Vector3 a = to_vector(mesh.vertices[t[0]]);
+    const Vector3 b = to_vector(mesh.vertices[t[1]]);
+    const Vector3 c = to_vector(mesh.vertices[t[2]]);
     volume += a.dot(b.cross(c)) / 6;
-    against += (b - a).cross(c - a).dot(vector(mesh.normals[t[0]])) < 0 ? 1U : 0U;
+    against += (b - a).cross(c - a).dot(to_vector(mesh.normals[t[0]])) < 0 ? 1U : 0U;
     for (std::size_t i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
   }
   EXPECT_GT(volume, 0);
@@ -36,14 +32,14 @@ void check(const Geometry& mesh) {
     ASSERT_EQ(count, 1);
     ASSERT_EQ(edges.count({edge.second, edge.first}), 1U) << "an open edge";
   }
-  for (const Point3f& n : mesh.normals) ASSERT_NEAR(vector(n).norm(), 1, 1e-5);
+  for (const Point3f& n : mesh.normals) ASSERT_NEAR(to_vector(n).norm(), 1, 1e-5);
 }
 
 double mean_side(const Geometry& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i)
-      sum += (vector(mesh.vertices[t[i]]) - vector(mesh.vertices[t[(i + 1) % 3]])).norm();
+      sum += (to_vector(mesh.vertices[t[i]]) - to_vector(mesh.vertices[t[(i + 1) % 3]])).norm();
   return sum / (3.0 * static_cast<double>(mesh.triangles.size()));
 }
 
@@ -51,8 +47,8 @@ double largest_extent(const Geometry& mesh) {
   Vector3 low = Vector3::Constant(1e9);
   Vector3 high = -low;
   for (const Point3f& p : mesh.vertices) {
-    low = low.cwiseMin(vector(p));
-    high = high.cwiseMax(vector(p));
+    low = low.cwiseMin(to_vector(p));
+    high = high.cwiseMax(to_vector(p));
   }
   return (high - low).maxCoeff();
 }

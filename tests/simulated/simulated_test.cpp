@@ -13,10 +13,6 @@
 namespace pliant {
 namespace {
 
-Vector3 vector(const Point3f& p) {
-  return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-}
-
 std::uint64_t fingerprint(std::uint64_t hash, const DepthFrame& frame) {
   for (int i = 0; i < frame.width * frame.height; ++i) hash = (hash ^ frame.depth[i]) * 1099511628211U;
   return hash;
@@ -87,7 +83,7 @@ TEST_P(SimulatedObject, TruthFitsTheDepth) {
     std::size_t fits = 0;
     std::size_t floats = 0;
     for (std::size_t i = 0; i < truth.vertices.size(); ++i) {
-      const Vector3 p = vector(truth.vertices[i]);
+      const Vector3 p = to_vector(truth.vertices[i]);
       const auto u = static_cast<int>(std::lround(camera.fx * p.x() / p.z() + camera.cx));
       const auto v = static_cast<int>(std::lround(camera.fy * p.y() / p.z() + camera.cy));
       if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) {
@@ -121,7 +117,7 @@ TEST_P(SimulatedObject, RigidVerticesFollowTheirPart) {
     for (std::size_t i = 0; i < truth.vertices.size(); ++i) {
       if (truth.vertex_part[i] < 0) continue;
       const RigidTransform& part = truth.parts[static_cast<std::size_t>(truth.vertex_part[i])];
-      ASSERT_LT((part * vector(source->mesh().vertices[i]) - vector(truth.vertices[i])).norm(), 1e-6);
+      ASSERT_LT((part * to_vector(source->mesh().vertices[i]) - to_vector(truth.vertices[i])).norm(), 1e-6);
     }
     for (const RigidTransform& part : truth.parts) {
       ASSERT_LT((part.rotation * part.rotation.transpose() - Matrix3::Identity()).norm(), 1e-9);
@@ -141,8 +137,8 @@ TEST_P(SimulatedObject, StandsStillThenMovesAsAHandWouldMoveItAndComesRound) {
     double moved = 0;
     double away = 0;
     for (std::size_t i = 0; i < last.size(); ++i) {
-      moved = std::max(moved, (vector(truth.vertices[i]) - vector(last[i])).norm());
-      away = std::max(away, (vector(truth.vertices[i]) - vector(first[i])).norm());
+      moved = std::max(moved, (to_vector(truth.vertices[i]) - to_vector(last[i])).norm());
+      away = std::max(away, (to_vector(truth.vertices[i]) - to_vector(first[i])).norm());
     }
     for (std::size_t k = 0; k < parts.size(); ++k)
       turned = std::max(
@@ -175,7 +171,8 @@ TEST(Simulated, TheCushionIsDentedAndComesBack) {
     const SimulatedTruth& truth = (*source)->truth();
     double off = 0;
     for (std::size_t i = 0; i < truth.vertices.size(); ++i)
-      off = std::max(off, (truth.parts[0] * vector(mesh.vertices[i]) - vector(truth.vertices[i])).norm());
+      off =
+          std::max(off, (truth.parts[0] * to_vector(mesh.vertices[i]) - to_vector(truth.vertices[i])).norm());
     deepest = std::max(deepest, off);
     if (truth.number == 190) at_rest = off;
   }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "drivers/recording/text_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace pliant {
 namespace {
@@ -14,19 +15,13 @@ namespace fs = std::filesystem;
 
 class TruthWriterTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              (std::string("pliant_truth_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   [[nodiscard]] std::string content(const fs::path& name) const {
     const Result<std::string> text = read_text_file(folder_ / name, 1 << 24);
     return text ? *text : text.error().message;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder made_;
+  fs::path folder_ = made_.path();
 };
 
 TEST_F(TruthWriterTest, WritesTheMeshAndEveryVertexOfEveryFrame) {
