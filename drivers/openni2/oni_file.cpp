@@ -22,8 +22,9 @@ constexpr auto kLongestGap = std::chrono::seconds(3);
 
 /// The library's thread (PlayerDevice::MainLoop) looks through the list of streams without the lock under
 /// which one is taken out of it. It does so between two frames only, and, at the end of a file that is not
-/// repeated, without pause: then it reads memory that is free. So the file is repeated, which leaves the
-/// thread waiting to hand out the first frame again, and it is given this time to get there.
+/// repeated, without pause: then it reads memory that is free. So the file is repeated and stands still until
+/// a frame is asked for, which leaves the thread waiting to hand out the next one, and it is given this time
+/// to get there: it runs from the moment the file is open, whether the stream was ever started or not.
 constexpr auto kToRest = std::chrono::milliseconds(30);
 
 class OniFile final : public DepthSource {
@@ -36,17 +37,10 @@ class OniFile final : public DepthSource {
 
   [[nodiscard]] Outcome open(const std::string& file, const SourceWish& wish) {
     if (Outcome done = stream_.open(file); !done) return done;
-    const OpenNi2Api& api = library_->api();
     // By hand instead of by the clock: a frame is read when it is asked for, and none is left out.
-    const float speed = -1;
-    const OniBool repeat = TRUE;
-    if (const OniStatus status =
-            api.device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_SPEED, &speed, sizeof speed);
-        status != ONI_STATUS_OK)
+    if (const OniStatus status = play_by_hand(); status != ONI_STATUS_OK)
       return library_->fault("the speed of playback cannot be set", status);
-    if (const OniStatus status = api.device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED,
-                                                &repeat, sizeof repeat);
-        status != ONI_STATUS_OK)
+    if (const OniStatus status = repeat(); status != ONI_STATUS_OK)
       return library_->fault("repeating cannot be switched on", status);
     if (Outcome done = stream_.learn(wish); !done) return done;
     int count = 0;
@@ -56,9 +50,7 @@ class OniFile final : public DepthSource {
     if (stream_.mirrored())
       turned_.resize(static_cast<std::size_t>(stream_.camera().width) *
                      static_cast<std::size_t>(stream_.camera().height));
-    Outcome started = stream_.start();
-    started_ = static_cast<bool>(started);
-    return started;
+    return stream_.start();
   }
   [[nodiscard]] const Intrinsics& intrinsics() const override { return stream_.camera(); }
   [[nodiscard]] const SensorDescription& sensor() const override { return sensor_; }
@@ -66,8 +58,12 @@ class OniFile final : public DepthSource {
   [[nodiscard]] double rate() const override { return stream_.rate(); }
   [[nodiscard]] std::int64_t frame_count() const override { return count_; }
   void close() override {
-    if (started_) std::this_thread::sleep_for(kToRest);
-    started_ = false;
+    if (stream_.device() != nullptr) {
+      // again, since opening may have failed before it came to that
+      static_cast<void>(play_by_hand());
+      static_cast<void>(repeat());
+      std::this_thread::sleep_for(kToRest);
+    }
     stream_.close();
     closed_ = true;
   }
@@ -112,6 +108,16 @@ class OniFile final : public DepthSource {
   }
 
  private:
+  OniStatus play_by_hand() const {
+    const float speed = -1;
+    return library_->api().device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_SPEED, &speed,
+                                      sizeof speed);
+  }
+  OniStatus repeat() const {
+    const OniBool on = TRUE;
+    return library_->api().device_set(stream_.device(), ONI_DEVICE_PROPERTY_PLAYBACK_REPEAT_ENABLED, &on,
+                                      sizeof on);
+  }
   void turn(DepthFrame& frame) {
     const auto width = static_cast<std::size_t>(frame.width), height = static_cast<std::size_t>(frame.height);
     if (width * height > turned_.size()) return;  // another size; whoever takes it refuses it
@@ -130,7 +136,7 @@ class OniFile final : public DepthSource {
   std::int64_t count_ = 0, number_ = 0;
   std::int64_t index_ = -1, stamp_ = -1;  // the library's own, of the latest frame
   Clock::time_point last_;
-  bool started_ = false, waiting_ = false, closed_ = false;
+  bool waiting_ = false, closed_ = false;
 };
 
 }  // namespace

@@ -20,8 +20,8 @@ namespace pliant::shapes {
 [[nodiscard]] Geometry plane(double width, double height, std::size_t rows);
 /// Along z; `closed`: with its two ends.
 [[nodiscard]] Geometry cylinder(double radius, double height, std::size_t rows, bool closed);
-/// A bottle along z as it is seen from one side: `degrees` of its turn, the middle of them towards x. Its axis
-/// goes through (0.1, 0.2).
+/// A bottle along z as it is seen from one side: `degrees` of its turn, the middle of them towards x. Its
+/// axis goes through (0.1, 0.2).
 [[nodiscard]] Geometry side_of_bottle(double degrees, std::size_t rows);
 /// A bar of an L's profile along y, without its ends.
 [[nodiscard]] Geometry angle_bar(std::size_t rows);

@@ -111,5 +111,28 @@ TEST(OpenNi2Failures, OfAFileEndInAnErrorOrFrames) {
   sweep([&](const std::shared_ptr<OpenNi2Library>& library) { return open_oni(library, file, {}); });
 }
 
+// The library's thread for the file looks through the streams while one of them is taken away.
+TEST(OpenNi2Failures, OfAFileThatIsClosedBeforeItPlaysHarmNothing) {
+  const SensorRig rig;
+  rig.control().rate = 60;
+  const std::filesystem::path file = rig.folder() / "five.oni";
+  rig.record_oni(file, 5);
+  Sweep::status = ONI_STATUS_ERROR;
+  int failed = 0;
+  constexpr int kRounds = 20;
+  for (int round = 0; round < kRounds; ++round)
+    for (int n = 4;; ++n) {
+      Sweep::calls = 0;
+      Sweep::fail_at = n;
+      auto library = OpenNi2Library::start(nullptr, failing_api());
+      if (!library) continue;
+      const auto source = open_oni(*library, file, {});
+      if (source && Sweep::calls < n) break;  // all calls of opening had their turn
+      if (!source) ++failed;
+      ASSERT_LT(n, 200);
+    }
+  EXPECT_GE(failed, kRounds * 5);
+}
+
 }  // namespace
 }  // namespace pliant::test
