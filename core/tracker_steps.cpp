@@ -103,7 +103,7 @@ void align_regions(TrackerState& s) noexcept {
 
 void warp_surface(TrackerState& s) noexcept {
   WarpSettings settings;
-  settings.rounds = 1 + static_cast<int>(2 * s.work_level + 0.5);
+  settings.rounds = 1 + static_cast<int>(s.work_level + 0.5);
   settings.material = s.settings.material;
   settings.inward = kMotionGate;
   settings.outward = kMotionGate / 2;  // a finger stands before the surface, a dent never does

@@ -12,7 +12,7 @@
 namespace pliant {
 
 struct WarpSettings {
-  int rounds = 3;            ///< of looking up readings and solving [1, 8]
+  int rounds = 2;            ///< of looking up readings and solving [1, 8]; the next frame goes on from there
   int iterations = 12;       ///< of the solver in each round [1, 64]
   double material = 0.5;     ///< 0 stiff … 1 soft [0, 1]
   std::int32_t inward = 0;   ///< how far behind a point its reading may lie, 1/16 mm
