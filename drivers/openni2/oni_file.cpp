@@ -1,7 +1,9 @@
 // Playback of .oni recordings.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "drivers/openni2/oni_layout.hpp"
 #include "drivers/openni2/openni2.hpp"
 #include "drivers/openni2/openni2_stream.hpp"
+#include "drivers/openni2/thread_watch.hpp"
 
 namespace pliant {
 
@@ -27,6 +30,10 @@ constexpr auto kLongestGap = std::chrono::seconds(3);
 /// to get there: it runs from the moment the file is open, whether the stream was ever started or not.
 constexpr auto kToRest = std::chrono::milliseconds(30);
 
+/// Told to end before it began, that thread never hears of it: it is killed after 3 s, while what it looks
+/// through is freed. A busy machine may well keep it from beginning for as long as opening takes.
+constexpr auto kLongestToBegin = std::chrono::seconds(10);
+
 class OniFile final : public DepthSource {
  public:
   OniFile(std::shared_ptr<OpenNi2Library> library, const SensorDescription& sensor)
@@ -36,7 +43,12 @@ class OniFile final : public DepthSource {
   ~OniFile() override { close(); }
 
   [[nodiscard]] Outcome open(const std::string& file, const SourceWish& wish) {
-    if (Outcome done = stream_.open(file); !done) return done;
+    const std::vector<int> before = threads_now();
+    const Outcome opened = stream_.open(file);
+    const std::vector<int> now = threads_now();
+    std::set_difference(now.begin(), now.end(), before.begin(), before.end(),
+                        std::back_inserter(library_threads_));
+    if (!opened) return opened;
     // By hand instead of by the clock: a frame is read when it is asked for, and none is left out.
     if (const OniStatus status = play_by_hand(); status != ONI_STATUS_OK)
       return library_->fault("the speed of playback cannot be set", status);
@@ -62,7 +74,9 @@ class OniFile final : public DepthSource {
       // again, since opening may have failed before it came to that
       static_cast<void>(play_by_hand());
       static_cast<void>(repeat());
-      std::this_thread::sleep_for(kToRest);
+      const Clock::time_point latest = Clock::now() + kLongestToBegin;
+      do std::this_thread::sleep_for(kToRest);
+      while (!have_all_waited(library_threads_) && Clock::now() < latest);
     }
     stream_.close();
     closed_ = true;
@@ -132,6 +146,7 @@ class OniFile final : public DepthSource {
   std::shared_ptr<OpenNi2Library> library_;
   SensorDescription sensor_;
   OpenNi2Stream stream_;
+  std::vector<int> library_threads_;  ///< that began with opening the file
   std::vector<std::uint16_t> turned_;
   std::int64_t count_ = 0, number_ = 0;
   std::int64_t index_ = -1, stamp_ = -1;  // the library's own, of the latest frame
