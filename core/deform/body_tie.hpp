@@ -12,7 +12,7 @@ namespace pliant {
 
 /// A patch with less than this share of the readings that it could have, two or three of them, is not seen:
 /// what is seen takes it along.
-constexpr double kFewReadings = 0.1;
+inline constexpr double kFewReadings = 0.1;
 
 /// Weight of a spring that gives way beyond `scale`.
 [[nodiscard]] inline double giving_way(double square, double scale) noexcept {

@@ -7,6 +7,7 @@
 
 #include "core/deform/elastic_system.hpp"
 #include "core/fixed/moments.hpp"
+#include "core/track/pose_lanes.hpp"
 #include "core/track/track_state.hpp"
 
 namespace pliant {
@@ -47,19 +48,23 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
                   const Projector& projector, const Tolerance& tolerance, const RegionSet& regions,
                   const WarpSettings& settings, const PointState& points, PatchWarp& warp) noexcept;
 
+/// The poses of a warp's patches, as blending takes them.
+using WarpLanes = std::array<PoseLanes, kMaxPatches>;
+
+[[nodiscard]] inline WarpLanes lanes_of(const PatchTables& patches, const PatchWarp& warp) noexcept {
+  WarpLanes lanes;
+  for (std::size_t p = 0; p < patches.count; ++p) lanes[p] = PoseLanes(warp.fixed[p]);
+  return lanes;
+}
+
 /// Where the warp puts a point: the blend of what its patches say. Camera frame, 1/16 mm.
 [[nodiscard]] inline IntPoint warped_point(const ModelTables& model, const PatchTables& patches,
-                                           const PatchWarp& warp, std::size_t i) noexcept {
+                                           const WarpLanes& lanes, std::size_t i) noexcept {
   const PointBlend& blend = patches.blend[i];
-  IntPoint sum{1 << (PointBlend::kShift - 1), 1 << (PointBlend::kShift - 1), 1 << (PointBlend::kShift - 1)};
-  for (std::size_t j = 0; j < 4; ++j) {
-    if (blend.weight[j] == 0) break;
-    const IntPoint p = warp.fixed[blend.patch[j]].point(model.x[i], model.y[i], model.z[i]);
-    sum.x += blend.weight[j] * p.x;
-    sum.y += blend.weight[j] * p.y;
-    sum.z += blend.weight[j] * p.z;
-  }
-  return {sum.x >> PointBlend::kShift, sum.y >> PointBlend::kShift, sum.z >> PointBlend::kShift};
+  PointSum sum(model.x[i], model.y[i], model.z[i], 1 << (PointBlend::kShift - 1));
+  for (std::size_t j = 0; j < blend.weight.size() && blend.weight[j] != 0; ++j)
+    sum.add(lanes[blend.patch[j]], blend.weight[j]);
+  return sum.over(PointBlend::kShift);
 }
 
 }  // namespace pliant

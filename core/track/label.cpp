@@ -6,7 +6,6 @@
 
 #include "core/deform/radius_search.hpp"
 #include "core/fixed/integer_root.hpp"
-#include "core/track/pose_lanes.hpp"
 #include "core/track/sight.hpp"
 
 namespace pliant {
@@ -102,18 +101,6 @@ std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
       std::min<std::int64_t>(x * x + y * y + z * z, std::numeric_limits<std::uint32_t>::max()))));
 }
 
-using WarpLanes = std::array<PoseLanes, kMaxPatches>;
-
-/// warped_point() with the poses as lanes.
-IntPoint warped_by(const WarpLanes& lanes, const LabelContext& context, std::size_t i) noexcept {
-  const ModelTables& model = context.model;
-  const PointBlend& blend = context.patches.blend[i];
-  PointSum sum(model.x[i], model.y[i], model.z[i], 1 << (PointBlend::kShift - 1));
-  for (std::size_t j = 0; j < blend.weight.size() && blend.weight[j] != 0; ++j)
-    sum.add(lanes[blend.patch[j]], blend.weight[j]);
-  return sum.over(PointBlend::kShift);
-}
-
 /// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
 /// inlier limit, 3 σ or more, put it off its region, which has it at `rigid`.
 Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sighting& sighting,
@@ -128,7 +115,7 @@ Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sight
     verdict.off = at_home.sight == Sight::in_front;
     return verdict;
   }
-  verdict.warped = warped_by(lanes, context, i);
+  verdict.warped = warped_point(context.model, context.patches, lanes, i);
   verdict.distance = distance_of(verdict.rigid, verdict.warped);
   const bool apart = verdict.distance * 4 > 3 * context.tolerance.deformed(verdict.rigid.z);
   if (at_home.sight == Sight::agrees && !apart) return verdict;
@@ -173,8 +160,7 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
   const ModelTables& model = context.model;
   const RegionPoses poses = fixed_poses(regions, model.centre);
   const int alive = count_alive(regions);
-  WarpLanes lanes;
-  for (std::size_t p = 0; p < context.patches.count; ++p) lanes[p] = PoseLanes(context.warp.fixed[p]);
+  const WarpLanes lanes = lanes_of(context.patches, context.warp);
   const Sighting sighting(model, context.surface, context.projector, context.tolerance);
   const std::uint8_t enough_to_switch = context.with_memory ? kSwitchAt : std::uint8_t{1};
   SightCounts counts;

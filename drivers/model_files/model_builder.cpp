@@ -97,7 +97,6 @@ void fill_normals(OrientedCloud& cloud) {
   }
 }
 
-/// The model's points, in farthest-point order.
 /// The model's points out of `cloud`, which stands for `given` vertices.
 OrientedCloud chosen_points(const OrientedCloud& cloud, std::size_t given, double spacing,
                             BuiltModel& built) {
@@ -107,6 +106,7 @@ OrientedCloud chosen_points(const OrientedCloud& cloud, std::size_t given, doubl
   return chosen;
 }
 
+/// The model's points, in farthest-point order.
 OrientedCloud points_of_mesh(Mesh& mesh, const ModelBuildSettings& settings, BuiltModel& built) {
   const double spacing = settings.spacing;
   built.closed_surface = settings.wound_outward ? is_closed(mesh) : orient_mesh(mesh, built.warnings);

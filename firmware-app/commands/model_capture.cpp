@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "core/capture/object_capture.hpp"
-#include "drivers/geometry_files/atomic_file.hpp"
+#include "drivers/geometry_files/output_place.hpp"
 #include "drivers/model_files/model_builder.hpp"
 #include "drivers/recording/pose_list.hpp"
 #include "drivers/view_files/view_files.hpp"
@@ -169,26 +167,10 @@ std::string refused_words(const CaptureOptions& options) {
 }
 
 /// A place that cannot be written to shows before the object was turned for half a minute, not after.
-Outcome check_place(const std::string& file, const char* option) {
+Outcome check_output(const std::string& file, const char* option) {
   if (file.empty())
     return Error{ErrorKind::bad_input, fmt::format("{} names no file; name one to write to", option)};
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  std::error_code fault;
-  if (!folder.empty() && !std::filesystem::is_directory(folder, fault))
-    return Error{ErrorKind::write, fmt::format("{}: cannot be written: there is no folder {}; make it first",
-                                               file, folder.string())};
-  AtomicFile probe;  // goes again when it is not committed
-  if (Outcome opened = probe.open(file.c_str()); !opened) return opened;
-  if (!std::filesystem::is_regular_file(file, fault) && std::filesystem::exists(file, fault))
-    return success();
-  const std::filesystem::space_info space =
-      std::filesystem::space(folder.empty() ? std::filesystem::path(".") : folder, fault);
-  if (fault || space.available >= kLeastRoom) return success();
-  return Error{
-      ErrorKind::write,
-      fmt::format(
-          "{}: {:.1f} MB are free there and up to {:.0f} MB needed; free some space, or write elsewhere",
-          file, megabytes(space.available), megabytes(kLeastRoom))};
+  return check_output_place(file, kLeastRoom);
 }
 
 int capture(const CaptureOptions& given) {
@@ -196,10 +178,10 @@ int capture(const CaptureOptions& given) {
   CaptureOptions options = given;
   if (const std::string fault = refused_words(options); !fault.empty())
     return report({ErrorKind::bad_input, fault});
-  if (const Outcome possible = check_place(options.output, "--output"); !possible)
+  if (const Outcome possible = check_output(options.output, "--output"); !possible)
     return report(possible.error());
   if (!options.ply.empty())
-    if (const Outcome possible = check_place(options.ply, "--ply"); !possible)
+    if (const Outcome possible = check_output(options.ply, "--ply"); !possible)
       return report(possible.error());
   options.capture.separate_views = !options.views.empty();
   if (options.at.size() == 2) {

@@ -8,6 +8,7 @@
 #include "tests/accuracy/registration_runs.hpp"
 #include "tests/accuracy/view_maker.hpp"
 #include "tests/core/bumpy_object.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -52,7 +53,7 @@ class PictureRun {
   std::uint64_t work_of(const char* name, const std::vector<std::uint16_t>& picture, bool& found) {
     const double start = thread_ms();
     const RegistrationResult& result =
-        run_.registration.register_depth(frame_of(picture, camera_), camera_, SensorDescription());
+        run_.registration.register_depth(test::frame_of(picture, camera_), camera_, SensorDescription());
     found = result.outcome == RegistrationOutcome::found;
     std::printf("%-24s %6.1f million instructions, about, %5.1f ms\n", name,
                 static_cast<double>(result.work) * 1e-6, thread_ms() - start);

@@ -10,6 +10,7 @@
 #include "tests/accuracy/plain_shapes.hpp"
 #include "tests/accuracy/registration_runs.hpp"
 #include "tests/accuracy/view_maker.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -73,7 +74,7 @@ int look(int argc, char** argv) {
         const std::uint64_t seed = first + static_cast<std::uint64_t>(n);
         const std::vector<std::uint16_t> picture = picture_like(target, shape, seed, image);
         for (ReadyDetector* one : {&single, &tracker}) {
-          const Detection& d = one->look(frame_of(picture, camera));
+          const Detection& d = one->look(test::frame_of(picture, camera));
           const bool found = one->detector.state() == DetectState::found;
           claims[one == &single ? 0 : 1] += found ? 1 : 0;
           if (found)

@@ -4,6 +4,7 @@
 #include "tests/accuracy/plain_shapes.hpp"
 #include "tests/accuracy/registration_runs.hpp"
 #include "tests/core/bumpy_object.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -32,7 +33,7 @@ TEST(PlainShapes, AreNotTakenForAnObjectOfTheirSize) {
       for (std::uint64_t seed = 1; seed <= 6; ++seed) {
         const std::vector<std::uint16_t> picture = picture_like(target, shape, seed, image);
         const RegistrationResult& result =
-            run.registration.register_depth(frame_of(picture, camera), camera, SensorDescription());
+            run.registration.register_depth(test::frame_of(picture, camera), camera, SensorDescription());
         EXPECT_NE(result.outcome, RegistrationOutcome::found)
             << name_of(shape) << ", seed " << seed << ", lumps " << share;
       }
@@ -54,7 +55,7 @@ TEST(PlainShapes, TheObjectItselfIsFoundAmongBallsOfItsSize) {
     if (!maker.make(seed, view)) continue;
     ++made;
     const RegistrationResult& with =
-        run.registration.register_depth(frame_of(view.with, camera), camera, SensorDescription());
+        run.registration.register_depth(test::frame_of(view.with, camera), camera, SensorDescription());
     if (with.outcome == RegistrationOutcome::found) {
       const RigidTransform& pose = with.instances[0].regions[0].transform;
       const bool good = degrees_between(pose.rotation, view.pose.rotation) < 10 &&
@@ -62,7 +63,7 @@ TEST(PlainShapes, TheObjectItselfIsFoundAmongBallsOfItsSize) {
       (good ? right : wrong) += 1;
     }
     const RegistrationResult& without =
-        run.registration.register_depth(frame_of(view.without, camera), camera, SensorDescription());
+        run.registration.register_depth(test::frame_of(view.without, camera), camera, SensorDescription());
     EXPECT_NE(without.outcome, RegistrationOutcome::found) << seed;
   }
   // Where six balls crowd about it, it may be missed; and once, in the attitude, mistaken.

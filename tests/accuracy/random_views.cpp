@@ -8,6 +8,7 @@
 #include "core/memory/row_major.hpp"
 #include "tests/accuracy/registration_runs.hpp"
 #include "tests/accuracy/view_maker.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -53,7 +54,7 @@ int look(int argc, char** argv) {
     ++made;
     double start = thread_ms();
     const RegistrationResult& result =
-        run.registration.register_depth(frame_of(view.with, camera), camera, SensorDescription());
+        run.registration.register_depth(test::frame_of(view.with, camera), camera, SensorDescription());
     times.push_back(thread_ms() - start);
     works.push_back(1e-6 * static_cast<double>(result.work));
     if (result.outcome != RegistrationOutcome::found) {
@@ -73,7 +74,7 @@ int look(int argc, char** argv) {
     }
     start = thread_ms();
     const RegistrationResult& nothing =
-        run.registration.register_depth(frame_of(view.without, camera), camera, SensorDescription());
+        run.registration.register_depth(test::frame_of(view.without, camera), camera, SensorDescription());
     empty_times.push_back(thread_ms() - start);
     empty_works.push_back(1e-6 * static_cast<double>(nothing.work));
     if (nothing.outcome == RegistrationOutcome::found) {

@@ -156,14 +156,6 @@ class ViewMaker {
   simulated::DisparityImage scene_{camera_}, background_{camera_};
 };
 
-inline DepthFrame frame_of(const std::vector<std::uint16_t>& picture, const Intrinsics& camera) {
-  DepthFrame frame;
-  frame.depth = picture.data();
-  frame.width = frame.stride = camera.width;
-  frame.height = camera.height;
-  return frame;
-}
-
 /// The mesh's vertices and triangles as a file would give them.
 inline Geometry geometry_of(const Mesh& mesh) {
   Geometry geometry;

@@ -51,6 +51,7 @@ class FarSide : public synthetic::SharedScene<flat_body> {
   /// Sorted errors of the points that face away and are moved by more than 6 mm, or by less than 1 mm.
   template <typename Move>
   static std::vector<double> errors(bool moved, Move move) {
+    const WarpLanes lanes = lanes_of(scene().patches, *scene().warp);
     std::vector<double> out;
     for (std::size_t i = 0; i < scene().tables.size; ++i) {
       const Vector3 rest = scene().rest(i);
@@ -58,7 +59,7 @@ class FarSide : public synthetic::SharedScene<flat_body> {
       if (moved ? way < 0.006 : way > 0.001) continue;
       const Vector3 truth = pose() * move(rest);
       if (scene().normal(pose(), i).dot(truth) <= 0) continue;
-      out.push_back(scene().off(i, truth));
+      out.push_back(scene().off(lanes, i, truth));
     }
     std::sort(out.begin(), out.end());
     return out;

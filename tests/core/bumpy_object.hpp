@@ -234,13 +234,4 @@ inline std::vector<std::uint16_t> depth_picture(const Intrinsics& camera, const 
   return picture;
 }
 
-/// The picture as a frame; it must outlive it.
-inline DepthFrame frame_of(const std::vector<std::uint16_t>& picture, const Intrinsics& camera) {
-  DepthFrame frame;
-  frame.depth = picture.data();
-  frame.width = frame.stride = camera.width;
-  frame.height = camera.height;
-  return frame;
-}
-
 }  // namespace pliant::testing

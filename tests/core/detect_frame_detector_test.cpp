@@ -4,6 +4,7 @@
 
 #include "core/detect/seam.hpp"
 #include "tests/core/bumpy_object.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -29,7 +30,7 @@ struct DetectorFixture {
     detector.start(model, c, SensorDescription(), Kernels::automatic);
   }
   void show(const std::vector<std::uint16_t>& picture, const Intrinsics& c = small_camera()) {
-    surface.build(testing::frame_of(picture, c), {0, 0, c.width, c.height});
+    surface.build(test::frame_of(picture, c), {0, 0, c.width, c.height});
   }
   DetectState run(std::int64_t budget = 1000000) {
     int steps = 0;

@@ -11,6 +11,7 @@
 #include "core/detect/quadric.hpp"
 #include "core/detect/self_likeness.hpp"
 #include "tests/core/bumpy_object.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -134,7 +135,7 @@ PlainBodyFit fit_to_box(const testing::TestCloud& cloud) {
   points.lay_out(workspace, kMostPlainPoints);
   EXPECT_FALSE(workspace.exhausted());
   surface.start(camera, SensorDescription());
-  surface.build(testing::frame_of(picture, camera), {0, 0, camera.width, camera.height});
+  surface.build(test::frame_of(picture, camera), {0, 0, camera.width, camera.height});
   snapshot.start(camera, SensorDescription());
   snapshot.take(surface);
   snapshot.compute_normals(0, snapshot.lattice_height(), 0.01);

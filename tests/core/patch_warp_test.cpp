@@ -48,13 +48,14 @@ class Warp : public synthetic::SharedScene<synthetic::bumpy_body> {
   /// Sorted errors against the pressed shape, metres: of points that face the camera and are `moved` by more
   /// than 6 mm or not.
   static std::vector<double> errors(double depth, bool moved) {
+    const WarpLanes lanes = lanes_of(scene().patches, *scene().warp);
     std::vector<double> out;
     for (std::size_t i = 0; i < scene().tables.size; ++i) {
       const Vector3 rest = scene().rest(i);
       const Vector3 truth = usual_pose() * pressed(rest, depth);
       if (((pressed(rest, depth) - rest).norm() > 0.006) != moved) continue;
       if (scene().normal(usual_pose(), i).dot(truth) > -0.5 * truth.norm()) continue;
-      out.push_back(scene().off(i, truth));
+      out.push_back(scene().off(lanes, i, truth));
     }
     std::sort(out.begin(), out.end());
     return out;
@@ -122,7 +123,8 @@ TEST_F(Warp, MovesAlongWithItsRegion) {
   Picture nothing(scene().camera);
   scene().see(nothing);
   scene().warp_now();
-  const IntPoint p = warped_point(scene().tables, scene().patches, *scene().warp, 100);
+  const IntPoint p =
+      warped_point(scene().tables, scene().patches, lanes_of(scene().patches, *scene().warp), 100);
   const Vector3 expected = scene().regions[0].pose * scene().rest(100);
   EXPECT_LT((Vector3(p.x, p.y, p.z) / kUnitsPerMetre - expected).norm(), 0.005);
 }

@@ -6,6 +6,7 @@
 
 #include "core/registration/cloud_registration.hpp"
 #include "tests/core/bumpy_object.hpp"
+#include "tests/frame_of.hpp"
 
 namespace pliant {
 namespace {
@@ -23,7 +24,7 @@ struct DepthFixture {
       all.normals.insert(all.normals.end(), one.normals.begin(), one.normals.end());
     }
     picture = testing::depth_picture(camera, all, 1.2, 1, 0.001);
-    frame = testing::frame_of(picture, camera);
+    frame = test::frame_of(picture, camera);
     settings.max_instances = most_instances;
     block =
         AlignedBlock(CloudRegistration::workspace_bytes(testing::bumpy_model(), picture.size(), settings));

@@ -87,13 +87,14 @@ TEST_F(Hinge, PutsRigidPointsWhereTheirRegionPutsThemOrAsFarToTheWarpAsTheLimitA
   // in the very frame of a change, too
   for (int frame = 0; frame < 3; ++frame) {
     (void)frame_at(0.4 - 0.1 * frame);
+    const WarpLanes lanes = lanes_of(scene().patches, *scene().warp);
     for (std::size_t i = 0; i < scene().tables.size; ++i) {
       if (scene().points.label[i] < 0) continue;
       ASSERT_EQ(scene().points.label[i], scene().points.home[i]);
       const TrackedRegion& region = scene().regions[static_cast<std::size_t>(scene().points.home[i])];
       ASSERT_TRUE(region.alive);
       const Vector3 rigid = region.pose * scene().rest(i) * kUnitsPerMetre;
-      const IntPoint w = warped_point(scene().tables, scene().patches, *scene().warp, i),
+      const IntPoint w = warped_point(scene().tables, scene().patches, lanes, i),
                      p = scene().points.position[i];
       const Vector3 apart = Vector3(w.x, w.y, w.z) - rigid;
       const double limit = scene().tolerance.deformed(static_cast<std::int32_t>(rigid.z()));

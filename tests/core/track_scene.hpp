@@ -103,9 +103,9 @@ class TrackScene {
     const IntPoint n = fixed.direction(tables.nx[i], tables.ny[i], tables.nz[i]);
     return Vector3(n.x, n.y, n.z) / 16384;
   }
-  /// How far off `truth` the warp puts point i, metres.
-  [[nodiscard]] double off(std::size_t i, const Vector3& truth) const {
-    const IntPoint p = warped_point(tables, patches, *warp, i);
+  /// How far off `truth` the warp of `lanes` puts point i, metres.
+  [[nodiscard]] double off(const WarpLanes& lanes, std::size_t i, const Vector3& truth) const {
+    const IntPoint p = warped_point(tables, patches, lanes, i);
     return (Vector3(p.x, p.y, p.z) / kUnitsPerMetre - truth).norm();
   }
 
