@@ -3,11 +3,13 @@
 #include <array>
 
 #include "core/fixed/integer_root.hpp"
+#include "core/track/shadow.hpp"
 
 namespace pliant {
 
 bool find_aside(const Surface& surface, const AsideReach& reach, int u, int v, const IntPoint& at,
                 const IntPoint& n, Aside& found) noexcept {
+  if (surface.depth(u, v) == 0 && in_shadow(surface, u, v, at.z, reach.outward, reach.step)) return false;
   std::int64_t best = static_cast<std::int64_t>(reach.inward) * reach.inward;
   IntPoint nearest;
   bool any = false;

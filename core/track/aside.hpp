@@ -24,8 +24,9 @@ struct Aside {
 };
 
 /// The nearest reading along the four directions of the picture, beside pixel (u, v) where the camera sees
-/// through the point `at` with normal `n`, whose surface faces as the point does. False when there is none.
-/// Overflow bound: reach <= 8191, so that a distance squared stays below 2^28.
+/// through the point `at` with normal `n`, whose surface faces as the point does. False when there is none,
+/// or when the pixel lies in the shadow of something nearer and may hide the point. Overflow bound: reach <=
+/// 8191, so that a distance squared stays below 2^28.
 [[nodiscard]] bool find_aside(const Surface& surface, const AsideReach& reach, int u, int v,
                               const IntPoint& at, const IntPoint& n, Aside& found) noexcept;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/track/shadow.hpp"
+
 namespace pliant {
 
 namespace {
@@ -39,6 +41,10 @@ bool find_contour(const Surface& surface, const Projector& projector, const Cont
     const std::int32_t gap = 2 * z8 - point.z;
     return gap > reach.behind ? Seen::other : -gap > kBulge * reach.behind ? Seen::hidden : Seen::object;
   };
+  const auto shaded = [&](int k) {
+    return in_shadow(surface, u + ((k * step_u + 128) >> 8), v + ((k * step_v + 128) >> 8), point.z,
+                     kBulge * reach.behind, 1);
+  };
   // A step along the larger component is one pixel of it: along the normal, a length of 16384 / major pixels
   // of depth over focal length.
   const int most = std::clamp(projector.pixels(reach.along, point.z) * (major >> 4) >> 10, 2, kMostSteps);
@@ -52,7 +58,10 @@ bool find_contour(const Surface& surface, const Projector& projector, const Cont
     if (next == Seen::object) {
       last = k;
       any = true;
-    } else if (next == Seen::other || k - last > kHole) {
+    } else if (next == Seen::other) {
+      break;
+    } else if (k - last > kHole) {
+      if (shaded(last + 1)) return false;
       break;
     }
   }

@@ -26,7 +26,7 @@ struct ContourReach {
 /// How far the outline lies from such a point along its normal, 1/16 mm, positive outwards: from the point's
 /// pixel outwards to the last reading of the object, or inwards to the first. What stands farther behind is
 /// not the object; a few pixels without a reading are a hole in it, more are behind its edge. False when
-/// there is no outline within reach, or something nearer, or the end of the picture, hides it. An
+/// there is no outline within reach, or something nearer, its shadow, or the end of the picture, hides it. An
 /// integer kernel. Overflow bounds: the normal as the picture shows it is below 2^16 in Q14, times 256 below
 /// 2^24; lengths are taken in 64 bits; at most 44 steps each way.
 [[nodiscard]] bool find_contour(const Surface& surface, const Projector& projector, const ContourReach& reach,

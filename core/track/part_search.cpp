@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/track/freedoms.hpp"
 #include "core/track/patch_flood.hpp"
 
 namespace pliant {
@@ -179,6 +180,7 @@ bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int
     if (off < moved || off < 2 * own || attempt.region - attempt.own <= best ||
         (!adrift && explained_share(patches, warp, k, region, attempt, give) < kMostOfWhatMoved))
       continue;
+    if (!tells_its_motion(patches, warp, attempt.set, attempt.pose)) continue;
     best = attempt.region - attempt.own;
     part.patches = attempt.set;
     part.pose = attempt.pose;

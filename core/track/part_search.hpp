@@ -19,7 +19,8 @@ struct RigidPart {
 };
 
 /// The part of region `k`, whose pose is `region`, that leaves most unexplained by the region's own motion,
-/// among those that are most of what moved there: what bends is no part. False when there is none.
+/// among those that are most of what moved there, what bends being no part, and whose readings tell how they
+/// moved. False when there is none.
 [[nodiscard]] bool find_rigid_part(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,
                                    const RigidTransform& region, const PartSearchSettings& settings,
                                    RigidPart& part) noexcept;
