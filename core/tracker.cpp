@@ -83,6 +83,7 @@ void TrackerState::lay_out(Workspace& workspace, const ModelView& model_view,
   tables.lay_out(workspace, count);
   surface.lay_out(workspace, intrinsics);
   points.lay_out(workspace, count);
+  last_frame.points.lay_out(workspace, count);
   taken_pixels = workspace.take<std::uint32_t>((pixels + 31) / 32);
   positions = workspace.take<Point3f>(count);
   residuals = workspace.take<float>(count);
@@ -149,9 +150,7 @@ const TrackResult& Tracker::process(const DepthFrame& frame) noexcept {
 
   bool tracked = false;
   if (s.following) {
-    s.before = s.regions;
-    s.patches_before = s.warp.pose;
-    s.patch_steps_before = s.warp.steps;
+    remember_last_frame(s);
     predict_regions(s);
     done(s, Stage::predict);
     observe_surface(s, frame);  // vertices and normals of the predicted window
@@ -194,12 +193,7 @@ void Tracker::set_work_level(double level) noexcept {
 
 void Tracker::start_from(const RigidTransform& pose) noexcept {
   TrackerState& s = *state_;
-  s.points.reset();
-  s.regions = RegionSet();
-  TrackedRegion& base = s.regions[0];
-  base.alive = true;
-  base.pose = base.last_pose = base.predicted = pose;
-  s.warp.reset(pose);
+  take_up(s, pose);
   s.following = true;
   s.search = SearchState::idle;
   s.just_lost = s.seen_before = false;

@@ -18,6 +18,15 @@ enum class SearchState : std::uint8_t {
   found     ///< its answer waits for the next frame
 };
 
+/// What a frame begins from, to return to when it fails.
+struct LastFrame {
+  RegionSet regions;
+  std::array<RigidTransform, kMaxPatches> patches;
+  std::array<StepMemory, kMaxPatches> patch_steps;
+  RegroupState regroup;
+  PointMemory points;
+};
+
 struct TrackerState {
   // What start() was given.
   ModelView model;
@@ -41,9 +50,7 @@ struct TrackerState {
 
   // The object.
   RegionSet regions;
-  RegionSet before;  // as they were before this frame, to return to when the frame fails
-  std::array<RigidTransform, kMaxPatches> patches_before;  // likewise
-  std::array<StepMemory, kMaxPatches> patch_steps_before;
+  LastFrame last_frame;
   RegroupState regroup_state;
   PatchWarp warp;
   Strain strain;
@@ -77,8 +84,12 @@ void weigh_strain(TrackerState& s) noexcept;
 /// True when what is seen bears the pose out. Sets confidence.
 [[nodiscard]] bool judge(TrackerState& s) noexcept;
 
-/// Forgets what a failed frame did to the regions; points whose region is gone with it go back to the base.
+void remember_last_frame(TrackerState& s) noexcept;
+/// Forgets all that a failed frame did.
 void return_to_last_frame(TrackerState& s) noexcept;
+
+/// The object is at `pose`, whole and at rest; nothing is known of it from before.
+void take_up(TrackerState& s, const RigidTransform& pose) noexcept;
 
 /// Tries to take the object up at `pose` in this frame; true when what is seen bears it out.
 [[nodiscard]] bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept;

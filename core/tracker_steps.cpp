@@ -153,13 +153,13 @@ void weigh_strain(TrackerState& s) noexcept {
 }
 
 bool judge(TrackerState& s) noexcept {
-  std::uint32_t agree = 0, deformed_matched = 0;
+  std::uint32_t agree = 0, deformed_matched = 0, seen_through = 0;
   for (std::size_t i = 0; i < s.tables.size; ++i) {
+    const bool matched = s.points.match[i] >= 0;
     agree += s.points.label[i] >= 0 ? 1U : 0U;
-    deformed_matched += s.points.label[i] == kDeformed && s.points.match[i] >= 0 ? 1U : 0U;
+    deformed_matched += s.points.label[i] == kDeformed && matched ? 1U : 0U;
+    seen_through += s.points.sight[i] == Sight::in_front && !matched ? 1U : 0U;
   }
-  const std::uint32_t seen_through =
-      s.counts.in_front > deformed_matched ? s.counts.in_front - deformed_matched : 0;
   const std::uint32_t hidden = s.counts.behind;
   const double explained = agree + 0.5 * deformed_matched;
   const double total = explained + 0.5 * deformed_matched + seen_through + 0.25 * hidden;
@@ -169,21 +169,35 @@ bool judge(TrackerState& s) noexcept {
   return agree >= fewest && s.confidence >= 0.4 && seen_through <= agree + deformed_matched / 2;
 }
 
-void return_to_last_frame(TrackerState& s) noexcept {
-  s.regions = s.before;
-  s.warp.pose = s.patches_before;
-  s.warp.steps = s.patch_steps_before;
-  for (std::size_t i = 0; i < s.tables.size; ++i)
-    if (!s.regions[static_cast<std::size_t>(s.points.home[i])].alive) s.points.home[i] = 0;
+void remember_last_frame(TrackerState& s) noexcept {
+  s.last_frame.regions = s.regions;
+  s.last_frame.patches = s.warp.pose;
+  s.last_frame.patch_steps = s.warp.steps;
+  s.last_frame.regroup = s.regroup_state;
+  s.last_frame.points.keep(s.points);
 }
 
-bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept {
+void return_to_last_frame(TrackerState& s) noexcept {
+  s.regions = s.last_frame.regions;
+  s.warp.pose = s.last_frame.patches;
+  s.warp.steps = s.last_frame.patch_steps;
+  s.regroup_state = s.last_frame.regroup;
+  s.last_frame.points.give_back(s.points);
+}
+
+void take_up(TrackerState& s, const RigidTransform& pose) noexcept {
   s.points.reset();
   s.regions = RegionSet();
   s.regroup_state = RegroupState();
   TrackedRegion& base = s.regions[0];
   base.alive = true;
   base.pose = base.last_pose = base.predicted = pose;
+  s.warp.reset(pose);
+}
+
+bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pose) noexcept {
+  take_up(s, pose);
+  TrackedRegion& base = s.regions[0];
   s.surface.build(frame, predicted_window(s.tables, s.projector, s.points, s.regions,
                                           kReach + s.tables.spacing * 4, s.camera.width, s.camera.height));
   AlignSettings

@@ -36,14 +36,58 @@ void give(const RegroupContext& context, std::int8_t from, std::int8_t to, int p
       context.warp.home[p] = to;
 }
 
+bool hangs_on(const RegionSet& regions, std::int8_t k, std::int8_t on) noexcept {
+  for (std::size_t step = 0; step < regions.size() && k >= 0; ++step) {
+    k = regions[static_cast<std::size_t>(k)].parent;
+    if (k == on) return true;
+  }
+  return false;
+}
+
+/// Where a region is: what nobody sees goes with what it hangs on.
+RigidTransform place_of(const RegionSet& regions, const TrackedRegion& region) noexcept {
+  return region.frames_unseen > 0 && region.parent >= 0
+             ? regions[static_cast<std::size_t>(region.parent)].pose * region.from_parent
+             : region.pose;
+}
+
+/// Hangs region `k` on `parent`, where it is; -1: on nothing.
+void hang(RegionSet& regions, std::size_t k, std::int8_t parent) noexcept {
+  TrackedRegion& region = regions[k];
+  region.pose = place_of(regions, region);
+  region.parent = parent;
+  if (parent >= 0)
+    region.from_parent = regions[static_cast<std::size_t>(parent)].pose.inverse() * region.pose;
+}
+
+/// Region `to` takes over how `from` moves; what hangs on it stays where it is.
+void take_motion(RegionSet& regions, std::size_t to, const TrackedRegion& from) noexcept {
+  std::array<RigidTransform, limits::kMaxRegions> places;
+  for (std::size_t r = 0; r < regions.size(); ++r) places[r] = place_of(regions, regions[r]);
+  regions[to].pose = from.pose;
+  regions[to].last_pose = from.last_pose;
+  regions[to].motion = from.motion;
+  regions[to].steps = from.steps;
+  regions[to].frames_unseen = from.frames_unseen;
+  for (std::size_t r = 0; r < regions.size(); ++r)
+    if (regions[r].alive && regions[r].parent == static_cast<std::int8_t>(to)) {
+      regions[r].pose = places[r];
+      regions[r].from_parent = from.pose.inverse() * places[r];
+    }
+}
+
 void dissolve(const RegroupContext& context, RegroupState& state, RegionSet& regions, PointState& points,
               std::size_t k, std::int8_t into) noexcept {
   const auto id = static_cast<std::int8_t>(k);
   give(context, id, into, -1, points);
-  const std::int8_t parent = regions[k].parent;
+  for (std::size_t i = 0; i < points.rival.size(); ++i)
+    if (points.rival[i] == id) {
+      points.rival[i] = -1;
+      points.switching[i] = 0;
+    }
+  if (hangs_on(regions, into, id)) hang(regions, static_cast<std::size_t>(into), regions[k].parent);
   for (std::size_t r = 0; r < regions.size(); ++r)
-    if (regions[r].alive && regions[r].parent == id)
-      regions[r].parent = static_cast<std::size_t>(into) == r ? parent : into;
+    if (regions[r].alive && regions[r].parent == id) hang(regions, r, into);
   regions[k] = TrackedRegion();
   state.suspected[k] = 0;
   for (std::size_t r = 0; r < regions.size(); ++r) state.alike[k][r] = state.alike[r][k] = 0;
@@ -91,6 +135,12 @@ bool adjacent(const RegroupContext& context, std::int8_t a, std::int8_t b) noexc
   return false;
 }
 
+bool is_seen(const RegroupContext& context, std::int8_t k) noexcept {
+  for (std::size_t p = 0; p < context.patches.count; ++p)
+    if (context.warp.home[p] == k && patch_counts(context.warp, p)) return true;
+  return false;
+}
+
 /// Does the region hang on no other any more? Somewhere along its borders a part stays within a patch's width
 /// of what it is joined to, however it turns; a region that does not has lost its way.
 bool torn_off(const RegroupContext& context, const RegionSet& regions, std::int8_t k) noexcept {
@@ -121,23 +171,20 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
     for (std::size_t a = 0; a < b; ++a) {
       std::uint8_t& alike = state.alike[a][b];
       const auto ia = static_cast<std::int8_t>(a), ib = static_cast<std::int8_t>(b);
-      if (!regions[a].alive || !regions[b].alive || !adjacent(context, ia, ib)) {
+      const bool a_larger = regions[a].members >= regions[b].members;
+      // of what nobody sees, nothing tells that it moves alike
+      if (!regions[a].alive || !regions[b].alive || !adjacent(context, ia, ib) ||
+          !is_seen(context, a_larger ? ib : ia)) {
         alike = 0;
         continue;
       }
-      const bool a_larger = regions[a].members >= regions[b].members;
       const bool fits =
           worse_by(context.model, context.patches, context.sighting, points, {a_larger ? ib : ia, nullptr},
                    regions[a_larger ? b : a].pose, regions[a_larger ? a : b].pose) <= kAsOne;
       alike = fits ? static_cast<std::uint8_t>(alike + 1) : std::uint8_t{0};
       if (alike < settings.merge_after) continue;
       alike = 0;
-      if (!a_larger) {
-        regions[a].pose = regions[b].pose;
-        regions[a].last_pose = regions[b].last_pose;
-        regions[a].motion = regions[b].motion;
-        regions[a].steps = regions[b].steps;
-      }
+      if (!a_larger) take_motion(regions, a, TrackedRegion(regions[b]));
       dissolve(context, state, regions, points, b, ia);
       return true;
     }

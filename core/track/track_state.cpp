@@ -49,4 +49,36 @@ void PointState::reset() noexcept {
   frames = 0;
 }
 
+void PointMemory::lay_out(Workspace& workspace, std::size_t points) noexcept {
+  home = workspace.take<std::int8_t>(points);
+  rival = workspace.take<std::int8_t>(points);
+  evidence = workspace.take<std::uint8_t>(points);
+  switching = workspace.take<std::uint8_t>(points);
+  sight = workspace.take<Sight>(points);
+  misfit = workspace.take<std::int32_t>(points);
+  offset = workspace.take<IntPoint>(points);
+}
+
+void PointMemory::keep(const PointState& points) noexcept {
+  std::copy(points.home.begin(), points.home.end(), home.begin());
+  std::copy(points.rival.begin(), points.rival.end(), rival.begin());
+  std::copy(points.evidence.begin(), points.evidence.end(), evidence.begin());
+  std::copy(points.switching.begin(), points.switching.end(), switching.begin());
+  std::copy(points.sight.begin(), points.sight.end(), sight.begin());
+  std::copy(points.misfit.begin(), points.misfit.end(), misfit.begin());
+  std::copy(points.offset.begin(), points.offset.end(), offset.begin());
+  frames = points.frames;
+}
+
+void PointMemory::give_back(PointState& points) const noexcept {
+  std::copy(home.begin(), home.end(), points.home.begin());
+  std::copy(rival.begin(), rival.end(), points.rival.begin());
+  std::copy(evidence.begin(), evidence.end(), points.evidence.begin());
+  std::copy(switching.begin(), switching.end(), points.switching.begin());
+  std::copy(sight.begin(), sight.end(), points.sight.begin());
+  std::copy(misfit.begin(), misfit.end(), points.misfit.begin());
+  std::copy(offset.begin(), offset.end(), points.offset.begin());
+  points.frames = frames;
+}
+
 }  // namespace pliant

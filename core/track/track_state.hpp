@@ -86,6 +86,20 @@ struct PointState {
   void reset() noexcept;
 };
 
+/// What PointState carries from one frame to the next.
+struct PointMemory {
+  std::span<std::int8_t> home, rival;
+  std::span<std::uint8_t> evidence, switching;
+  std::span<Sight> sight;
+  std::span<std::int32_t> misfit;
+  std::span<IntPoint> offset;
+  std::int32_t frames = 0;
+
+  void lay_out(Workspace& workspace, std::size_t points) noexcept;
+  void keep(const PointState& points) noexcept;
+  void give_back(PointState& points) const noexcept;
+};
+
 inline constexpr std::uint8_t kEvidenceMax = 8;
 /// Evidence from which a point counts as deformed: two clear frames, since one may be noise.
 inline constexpr std::uint8_t kEvidenceDeformed = 4;

@@ -21,7 +21,7 @@ class Contour : public ::testing::Test {
  protected:
   struct Found {
     std::vector<std::int32_t> above, below;  // distances at the upper and the lower edge, 1/16 mm
-    std::size_t rim = 0;
+    std::size_t rim = 0, upper_middle = 0;  // the latter: answers at the upper edge where the shadow may fall
   };
 
   /// The bar is drawn `shift` (metres) beside where its pose has it, before `more`.
@@ -32,6 +32,9 @@ class Contour : public ::testing::Test {
     moved.translation += shift;
     picture.draw(scene_.mesh, moved);
     picture.wall(wall);
+    // the upper edge, in the shadow of a thing beside it
+    if (shadow_) picture.block(150, 0, 164, 100, 0);
+    if (shadow_) picture.block(164, 0, 190, scene_.camera.height, 0.4);
     if (cover_) picture.block(0, 0, scene_.camera.width, scene_.camera.height, 0.4);
     scene_.see(picture);
     const FixedPose fixed(pose_, scene_.tables.centre);
@@ -45,6 +48,10 @@ class Contour : public ::testing::Test {
       std::int32_t distance = 0;
       if (find_contour(scene_.surface, scene_.projector, {kReach, kReach}, at, normal, distance))
         (normal.y < 0 ? found.above : found.below).push_back(distance);
+      else
+        continue;
+      int u = 0, v = 0;
+      if (normal.y < 0 && scene_.projector.project(at, u, v) && u >= 152 && u < 162) ++found.upper_middle;
     }
     return found;
   }
@@ -60,7 +67,7 @@ class Contour : public ::testing::Test {
 
   TrackScene scene_{synthetic::two_part_bar(), 0.004};
   RigidTransform pose_ = synthetic::pose_at({0, 0, 0.6}, {1, 0, 0}, 0.0);
-  bool cover_ = false;
+  bool cover_ = false, shadow_ = false;
 };
 
 TEST_F(Contour, LiesOnTheRimWhereTheObjectIs) {
@@ -93,6 +100,15 @@ TEST_F(Contour, IsNotSeenBehindSomethingNearer) {
   const Found found = look(Vector3::Zero());
   EXPECT_GT(found.rim, 20U);
   EXPECT_EQ(found.above.size() + found.below.size(), 0U);
+}
+
+TEST_F(Contour, IsNotSeenInAShadow) {
+  const Found open = look(Vector3::Zero());
+  ASSERT_GT(open.upper_middle, 3U);
+  shadow_ = true;
+  const Found shaded = look(Vector3::Zero());
+  EXPECT_EQ(shaded.upper_middle, 0U);
+  EXPECT_GT(shaded.above.size(), 10U) << "elsewhere it is";
 }
 
 TEST_F(Contour, TheRimIsWhereTheSurfaceTurnsAway) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/track/plane_equations.hpp"
 #include "tests/core/shared_scene.hpp"
 
 namespace pliant {
@@ -13,6 +14,21 @@ using synthetic::TrackScene;
 using synthetic::usual_pose;
 
 constexpr double kLimit = 0.004;
+
+/// Readings of all points of every patch, all round the body.
+void tell_everything(const TrackScene& scene, PatchWarp& warp) {
+  for (std::size_t p = 0; p < scene.patches.count; ++p) warp.moments[p] = PlaneMoments();
+  for (std::size_t i = 0; i < scene.tables.size; ++i) {
+    const std::size_t p = scene.patches.patch_of[i];
+    const FixedPose pose(warp.pose[p], scene.tables.centre);
+    const ModelTables& t = scene.tables;
+    const Vector3 c = warp.pose[p] * scene.patches.centres[p] * kUnitsPerMetre;
+    add_plane_row(warp.moments[p], pose.point(t.x[i], t.y[i], t.z[i]),
+                  pose.direction(t.nx[i], t.ny[i], t.nz[i]), 0, 256,
+                  {static_cast<std::int32_t>(c.x()), static_cast<std::int32_t>(c.y()),
+                   static_cast<std::int32_t>(c.z())});
+  }
+}
 
 /// A bar along x whose patches the warp has turned about the y axis.
 class PartSearch : public synthetic::SharedScene<synthetic::two_part_bar> {
@@ -39,6 +55,7 @@ class PartSearch : public synthetic::SharedScene<synthetic::two_part_bar> {
       warp.pose[p] = usual_pose() * bent;
       warp.seen[p] = scene().patches.sizes[p];
     }
+    tell_everything(scene(), warp);
     PartSearchSettings settings;
     settings.limit = kLimit;
     return find_rigid_part(scene().patches, warp, 0, usual_pose(), settings, part_);
@@ -91,6 +108,7 @@ TEST_F(PartSearch, ADentIsNoPartHoweverShallow) {
         warp.pose[p] = pose * dent;
         warp.seen[p] = body.patches.sizes[p];
       }
+      tell_everything(body, warp);
       PartSearchSettings settings;
       settings.limit = kLimit;
       EXPECT_FALSE(find_rigid_part(body.patches, warp, 0, pose, settings, part_)) << width << " " << depth;

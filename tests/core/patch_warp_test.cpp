@@ -95,6 +95,20 @@ TEST_F(Warp, FollowsAPressAndComesBack) {
   EXPECT_LT(back[back.size() * 95 / 100], 0.003);
 }
 
+TEST_F(Warp, IsNotPulledOutOfAShadow) {
+  Picture picture(scene().camera);
+  picture.draw(scene().mesh, usual_pose());
+  picture.wall(1.6);
+  picture.block(165, 60, 195, 180, 0.45);
+  picture.block(151, 60, 165, 180, 0);  // where the sensor's projector does not get past it
+  picture.shake(0.001, 5);
+  scene().see(picture);
+  for (int frame = 0; frame < 20; ++frame) scene().warp_now();
+  const std::vector<double> still = errors(0, false);
+  ASSERT_GT(still.size(), 500U);
+  EXPECT_LT(still[still.size() * 99 / 100], 0.002);
+}
+
 TEST_F(Warp, IsNotPulledByWhatStandsInFront) {
   Picture picture(scene().camera);
   picture.draw(scene().mesh, usual_pose());

@@ -4,53 +4,14 @@
 
 #include <algorithm>
 
-#include "tests/core/shared_scene.hpp"
+#include "tests/core/hinge.hpp"
 
 namespace pliant {
 namespace {
 
 using synthetic::Picture;
 
-/// A bar that bends at its middle, seen from its side.
-class Hinge : public synthetic::SharedScene<synthetic::two_part_bar, 5> {
- protected:
-  void SetUp() override {
-    scene().points.reset();
-    scene().place(pose());
-    scene().warp->reset(pose());
-    settings_.fewest_points = 40;
-  }
-  static RigidTransform pose() { return synthetic::pose_at({0, 0, 0.6}, {1, 0, 0}, 0.4); }
-  static Matrix3 bend(double angle) { return synthetic::turn({0, 1, 0.3}, angle); }
-
-  /// A frame of the bar with its right half turned by `angle` about the hinge.
-  bool frame_at(double angle, double noise = 0.001) {
-    Picture picture(scene().camera);
-    picture.draw(scene().mesh, pose(),
-                 [&](const Vector3& p) { return p.x() > 0 ? Vector3(bend(angle) * p) : p; });
-    picture.wall(1.5);
-    picture.shake(noise, 3);
-    scene().see(picture);
-    for (TrackedRegion& region : scene().regions) region.predicted = region.last_pose = region.pose;
-    scene().align_rounds(3, 12);
-    scene().align_tightly();
-    scene().warp_now();
-    (void)scene().look_now();
-    const Sighting sighting(scene().tables, scene().surface, scene().projector, scene().tolerance);
-    return regroup({scene().tables, scene().patches, *scene().warp, sighting, scene().tolerance}, settings_,
-                   state_, scene().regions, scene().points);
-  }
-  void bend_to(double from, double to) {
-    for (int step = 0; step <= 20; ++step) (void)frame_at(from + (to - from) * step / 20);
-  }
-  static std::int64_t alive() {
-    return std::count_if(scene().regions.begin(), scene().regions.end(),
-                         [](const TrackedRegion& r) { return r.alive; });
-  }
-
-  RegroupSettings settings_;
-  RegroupState state_;
-};
+using synthetic::Hinge;
 
 TEST_F(Hinge, MakesTwoRegionsOfHalvesThatMoveApart) {
   for (const double angle : {0.4, -0.4}) {

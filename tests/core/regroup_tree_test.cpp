@@ -1,0 +1,108 @@
+// Regions that nobody sees, and what hangs on what when regions go.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/core/hinge.hpp"
+
+namespace pliant {
+namespace {
+
+using synthetic::Hinge;
+
+/// Regions side by side along the bar, of equal length, all where the bar is.
+class RegionTree : public Hinge {
+ protected:
+  void lie_along(const std::vector<std::int8_t>& ids, const std::vector<std::int8_t>& parents) {
+    (void)frame_at(0);
+    settings_.fewest_points = 8;
+    double left = 0;
+    for (std::size_t i = 0; i < scene().tables.size; ++i) left = std::min(left, scene().rest(i).x());
+    for (std::size_t i = 0; i < scene().tables.size; ++i) {
+      const double along = (scene().rest(i).x() - left) / (-2.0001 * left);
+      const double place = std::clamp(along, 0.0, 0.9999) * static_cast<double>(ids.size());
+      scene().points.home[i] = ids[static_cast<std::size_t>(place)];
+    }
+    for (std::size_t k = 1; k < parents.size(); ++k) {
+      scene().regions[k] = scene().regions[0];
+      scene().regions[k].parent = parents[k];
+    }
+  }
+  static void expect_a_tree() {
+    for (std::size_t k = 0; k < scene().regions.size(); ++k) {
+      if (!scene().regions[k].alive) continue;
+      int steps = 0;
+      auto at = static_cast<std::int8_t>(k);
+      for (; at > 0 && steps < 9; ++steps) {
+        at = scene().regions[static_cast<std::size_t>(at)].parent;
+        if (at > 0) {
+          ASSERT_TRUE(scene().regions[static_cast<std::size_t>(at)].alive);
+        }
+      }
+      EXPECT_EQ(at, 0) << "region " << k;
+    }
+    for (const std::int8_t home : scene().points.home)
+      ASSERT_TRUE(scene().regions[static_cast<std::size_t>(home)].alive);
+  }
+};
+
+TEST_F(RegionTree, WhatNobodySeesStaysARegion) {
+  lie_along({0, 0, 1}, {-1, 0});
+  for (int frame = 0; frame < 3 * settings_.merge_after; ++frame) {
+    (void)frame_at(0, 0.001, 160);
+    ASSERT_EQ(alive(), 2) << frame;
+  }
+  bool changed = false;
+  for (int frame = 0; frame < settings_.merge_after && !changed; ++frame) changed = frame_at(0);
+  EXPECT_EQ(alive(), 1) << "as soon as it is seen to move alike";
+}
+
+TEST_F(RegionTree, WhatHungOnARegionThatMergesIntoItsGrandchildHangsOnThat) {
+  lie_along({0, 3, 1, 2}, {-1, 3, 0, 2});  // 1 hangs on 3, 3 on 2, 2 on 0
+  bool changed = false;
+  for (int frame = 0; frame < settings_.merge_after && !changed; ++frame) changed = frame_at(0);
+  ASSERT_TRUE(changed);
+  ASSERT_FALSE(scene().regions[2].alive);
+  EXPECT_EQ(scene().regions[1].parent, 0);
+  EXPECT_EQ(scene().regions[3].parent, 1);
+  for (int frame = 0; frame < 4 * settings_.merge_after; ++frame) {
+    (void)frame_at(0);
+    expect_a_tree();
+  }
+  EXPECT_EQ(alive(), 1);
+}
+
+TEST_F(RegionTree, WhatNobodySeesStaysWhereItIsWhenWhatItHangsOnGoes) {
+  lie_along({0, 1, 2}, {-1, 0, 1});
+  TrackedRegion& hidden = scene().regions[2];
+  hidden.frames_unseen = 3;
+  hidden.from_parent.rotation = bend(0.3);
+  TrackedRegion& torn = scene().regions[1];
+  torn.pose.translation.z() -= 0.15;
+  const RigidTransform before = torn.pose * hidden.from_parent;
+  ASSERT_TRUE(frame_at(0, 0.001, 190));
+  ASSERT_FALSE(torn.alive);
+  ASSERT_EQ(hidden.parent, 0);
+  // the region that tore off was followed once more before it went
+  const RigidTransform after = scene().regions[0].pose * hidden.from_parent;
+  EXPECT_LT((after.translation - before.translation).norm(), 0.03);
+  EXPECT_LT(synthetic::degrees_between(after.rotation, before.rotation), 10);
+}
+
+TEST_F(RegionTree, NothingIsLeftOfTheEvidenceForARegionThatWent) {
+  bend_to(0, 0.4);
+  ASSERT_EQ(alive(), 2);
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    if (scene().points.home[i] != 0) continue;
+    scene().points.rival[i] = 1;
+    scene().points.switching[i] = 9;
+  }
+  scene().regions[1].pose.translation.z() -= 0.15;
+  (void)frame_at(0.4);
+  ASSERT_EQ(alive(), 1);
+  for (const std::int8_t rival : scene().points.rival) ASSERT_NE(rival, 1);
+}
+
+}  // namespace
+}  // namespace pliant
