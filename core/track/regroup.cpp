@@ -296,14 +296,18 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
 }
 
 /// Rigid points bear the label of the region that they belong to now, where it puts them: those that changed
-/// region, or all of them.
+/// region, or all of them. Those that are seen elsewhere stay there, as deformed ones.
 void settle(const RegroupContext& context, const RegionSet& regions, bool all, PointState& points) noexcept {
   const RegionPoses poses = fixed_poses(regions, context.model.centre);
   for (std::size_t i = 0; i < context.model.size; ++i) {
     if (points.label[i] < 0 || (!all && points.label[i] == points.home[i])) continue;
-    points.label[i] = points.home[i];
-    points.position[i] = poses[static_cast<std::size_t>(points.home[i])].point(
-        context.model.x[i], context.model.y[i], context.model.z[i]);
+    const Sighting::Look look = context.sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
+    if (look.sight == Sight::agrees) {
+      points.label[i] = points.home[i];
+      points.position[i] = look.point;
+    } else {
+      points.label[i] = kDeformed;
+    }
   }
 }
 

@@ -90,6 +90,31 @@ TEST_F(RegionTree, WhatNobodySeesStaysWhereItIsWhenWhatItHangsOnGoes) {
   EXPECT_LT(synthetic::degrees_between(after.rotation, before.rotation), 10);
 }
 
+TEST_F(RegionTree, PointsOfARegionThatWentStayWhereTheyAreSeen) {
+  bend_to(0, 0.4);
+  ASSERT_EQ(alive(), 2);
+  (void)frame_at(0.4);
+  const std::vector<std::int8_t> labels(scene().points.label.begin(), scene().points.label.end());
+  const std::vector<IntPoint> before(scene().points.position.begin(), scene().points.position.end());
+  settings_.fewest_points = 100'000;  // too small to be a region any more
+  ASSERT_TRUE(frame_at(0.4));
+  ASSERT_EQ(alive(), 1);
+  const Sighting sighting(scene().tables, scene().surface, scene().projector, scene().tolerance);
+  const RegionPoses poses = fixed_poses(scene().regions, scene().tables.centre);
+  std::size_t deformed = 0;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] != 1 || scene().points.label[i] == kNotObserved) continue;
+    if (scene().points.label[i] == 0) {
+      ASSERT_EQ(sighting.look(i, poses[0]).sight, Sight::agrees);
+      continue;
+    }
+    const IntPoint &a = before[i], &b = scene().points.position[i];
+    ASSERT_LT(Vector3(a.x - b.x, a.y - b.y, a.z - b.z).norm(), 4 * kUnitsPerMillimetre);
+    ++deformed;
+  }
+  EXPECT_GT(deformed, 300U);
+}
+
 TEST_F(RegionTree, NothingIsLeftOfTheEvidenceForARegionThatWent) {
   bend_to(0, 0.4);
   ASSERT_EQ(alive(), 2);
