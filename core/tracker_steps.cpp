@@ -11,6 +11,7 @@
 #include "core/track/predict.hpp"
 #include "core/track/regain_hold.hpp"
 #include "core/track/steady.hpp"
+#include "core/track/strays.hpp"
 #include "core/track/undecided.hpp"
 #include "core/tracker_state.hpp"
 
@@ -116,6 +117,7 @@ void regain_base(TrackerState& s) noexcept {
 }
 
 void label_points(TrackerState& s) noexcept {
+  recall_strays(s.patches, s.warp, s.points);
   const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
   const PatchSet border = border_patches(s.patches, s.points.home);
   settle_undecided(s.tables, s.patches, border, sighting, s.regions, s.points);
