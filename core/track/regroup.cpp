@@ -267,6 +267,29 @@ std::uint32_t size_of(const PatchTables& patches, const PatchSet& set) noexcept 
   return size;
 }
 
+/// The region beside a part of region `k` whose motion explains the part as well as its own does: what the
+/// part slides along its own surface by is no motion of its own. None: -1.
+std::int8_t explained_by(const RegroupContext& context, std::int8_t k, const RigidPart& part, bool outline,
+                         const RegionSet& regions, const PointState& points) noexcept {
+  std::array<bool, limits::kMaxRegions> beside{};
+  for (std::size_t b = 0; b < context.patches.border_count; ++b) {
+    const PatchBorder& border = context.patches.borders[b];
+    if (part.patches.has(border.a)) beside[static_cast<std::size_t>(context.warp.home[border.b])] = true;
+    if (part.patches.has(border.b)) beside[static_cast<std::size_t>(context.warp.home[border.a])] = true;
+  }
+  std::int8_t best = -1;
+  double least = kAsOne;
+  for (std::size_t r = 0; r < regions.size(); ++r) {
+    if (!beside[r] || !regions[r].alive || static_cast<std::int8_t>(r) == k) continue;
+    const double worse = worse_by(context.model, context.patches, context.sighting, points,
+                                  {k, &part.patches, outline}, part.pose, regions[r].pose);
+    if (worse > least) continue;
+    least = worse;
+    best = static_cast<std::int8_t>(r);
+  }
+  return best;
+}
+
 bool split_parts(const RegroupContext& context, const RegroupSettings& settings, std::size_t slot,
                  RegroupState& state, RegionSet& regions, PointState& points) noexcept {
   PartSearchSettings search;
@@ -277,18 +300,24 @@ bool split_parts(const RegroupContext& context, const RegroupSettings& settings,
     search.limit = limit_at(context, region.pose);
     const auto id = static_cast<std::int8_t>(k);
     RigidPart part;
+    bool outline = false;
     const auto shows_two = [&] {
       if (!find_rigid_part(context.patches, context.warp, id, region.pose, search, part)) return false;
-      return worse_by(context.model, context.patches, context.sighting, points,
-                      {id, &part.patches,
-                       size_of(context.patches, part.patches) >= kWithOutline * settings.fewest_points},
+      outline = size_of(context.patches, part.patches) >= kWithOutline * settings.fewest_points;
+      return worse_by(context.model, context.patches, context.sighting, points, {id, &part.patches, outline},
                       part.pose, region.pose) >= kAsTwo;
     };
     if (!shows_two()) {
       state.suspected[k] = 0;
     } else if (++state.suspected[k] >= settings.split_after) {
       state.suspected[k] = 0;
-      split(context, id, slot, part, regions, points);
+      const std::int8_t other = explained_by(context, id, part, outline, regions, points);
+      if (other < 0)
+        split(context, id, slot, part, regions, points);
+      else
+        complete_part(context, id, part.patches).for_each([&](std::size_t p) {
+          give(context, id, other, static_cast<int>(p), points);
+        });
       return true;
     }
   }

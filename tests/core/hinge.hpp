@@ -39,6 +39,9 @@ class Hinge : public SharedScene<two_part_bar, 5> {
     scene().align_tightly();
     scene().warp_now();
     (void)scene().look_now();
+    return regroup_now();
+  }
+  bool regroup_now() {
     const Sighting sighting(scene().tables, scene().surface, scene().projector, scene().tolerance);
     return regroup({scene().tables, scene().patches, *scene().warp, sighting, scene().tolerance}, settings_,
                    state_, scene().regions, scene().points);
