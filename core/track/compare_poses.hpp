@@ -7,6 +7,11 @@
 
 namespace pliant {
 
+/// Shares of the inlier limit by which one pose may explain readings worse than two before a region splits,
+/// and up to which two regions are one. The limit is 4 σ or more and a reading's mean error after smoothing a
+/// third of σ: below a tenth all is noise. The gap between the two keeps a region from coming and going.
+inline constexpr double kAsTwo = 0.22, kAsOne = 0.15;
+
 /// The points that are asked: those of region `region`, of `patches` only if given.
 struct AskedPoints {
   std::int8_t region = 0;

@@ -4,6 +4,7 @@
 
 #include "core/deform/patch_readings.hpp"
 #include "core/geometry/symmetric_eigen6.hpp"
+#include "core/track/compare_poses.hpp"
 
 namespace pliant {
 
@@ -11,8 +12,8 @@ namespace {
 
 constexpr int kFree = 2;
 /// A motion by one unit changes the readings by this much in the mean square, at the least: as much as one
-/// pose must explain them worse than another to count as another (kAsTwo in regroup.cpp).
-constexpr double kTold = 0.22 * 0.22;
+/// pose must explain them worse than another to count as another.
+constexpr double kTold = kAsTwo * kAsTwo;
 
 Matrix6 full(Symmetric6 packed) noexcept {
   Matrix6 m;
