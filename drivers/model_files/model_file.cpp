@@ -2,10 +2,10 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -15,6 +15,9 @@
 namespace pliant {
 
 namespace {
+
+/// Far above the largest model. No more is read of a file that is none, so that it does not fill the memory.
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
 Error fault_at(std::string_view name, std::string_view what) {
   return {ErrorKind::bad_input, fmt::format("{}: {}", name, what)};
@@ -50,21 +53,24 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   if (S_ISDIR(about.st_mode)) return fault_at(name, "is a folder; name a model file");
   if (!S_ISREG(about.st_mode)) return fault_at(name, "is no regular file; name a model file");
   if (about.st_size == 0) return fault_at(name, describe(ModelFault::too_short));
-  const auto size = static_cast<std::size_t>(about.st_size);
-  void* mapped = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.get(), 0);
-  if (mapped == MAP_FAILED) return unreadable(name, errno);
-
-  ModelFile model;
-  model.image_ = {static_cast<const std::byte*>(mapped), size};
-  const ModelFault fault = ModelView::open(model.image_, model.view_);
-  if (fault != ModelFault::none) return fault_at(name, describe(fault));
-  return model;
+  const std::size_t size = std::min(static_cast<std::size_t>(about.st_size), kMostBytes);
+  // Held, not mapped: a file that is overwritten later must not change what was checked.
+  std::vector<std::byte> image(size);
+  std::size_t got = 0;
+  while (got < size) {
+    const ssize_t count = ::read(file.get(), image.data() + got, size - got);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return unreadable(name, errno);
+    if (count == 0) break;
+    got += static_cast<std::size_t>(count);
+  }
+  image.resize(got);
+  return from_image(std::move(image), name);
 }
 
 Result<ModelFile> ModelFile::from_image(std::vector<std::byte> image, std::string_view name) {
   ModelFile model;
-  model.held_ = std::move(image);
-  model.image_ = model.held_;
+  model.image_ = std::move(image);
   const ModelFault fault = ModelView::open(model.image_, model.view_);
   if (fault != ModelFault::none) return fault_at(name, describe(fault));
   return model;
@@ -72,27 +78,12 @@ Result<ModelFile> ModelFile::from_image(std::vector<std::byte> image, std::strin
 
 // A moved vector keeps its storage, so that views into it hold.
 ModelFile::ModelFile(ModelFile&& other) noexcept
-    : view_(std::exchange(other.view_, {})),
-      image_(std::exchange(other.image_, {})),
-      held_(std::exchange(other.held_, {})) {}
+    : view_(std::exchange(other.view_, {})), image_(std::exchange(other.image_, {})) {}
 
 ModelFile& ModelFile::operator=(ModelFile&& other) noexcept {
-  if (this == &other) return *this;
-  release();
   view_ = std::exchange(other.view_, {});
   image_ = std::exchange(other.image_, {});
-  held_ = std::exchange(other.held_, {});
   return *this;
-}
-
-ModelFile::~ModelFile() {
-  release();
-}
-
-void ModelFile::release() {
-  if (!image_.empty() && held_.empty()) ::munmap(const_cast<std::byte*>(image_.data()), image_.size());
-  image_ = {};
-  view_ = {};
 }
 
 Outcome write_model(const std::filesystem::path& path, std::span<const std::byte> image) {

@@ -11,8 +11,8 @@
 
 namespace pliant {
 
-/// A checked model image, mapped read-only from a file or held in memory. Views stay valid for as long as the
-/// ModelFile, or the one that it was moved to, lives.
+/// A checked model image, held in memory. Views stay valid for as long as the ModelFile, or the one that it
+/// was moved to, lives.
 class ModelFile {
  public:
   /// Errors name the file and the mend in one line.
@@ -25,18 +25,15 @@ class ModelFile {
   ModelFile& operator=(ModelFile&& other) noexcept;
   ModelFile(const ModelFile&) = delete;
   ModelFile& operator=(const ModelFile&) = delete;
-  ~ModelFile();
+  ~ModelFile() = default;
 
   [[nodiscard]] const ModelView& view() const { return view_; }
   /// The whole image.
   [[nodiscard]] std::span<const std::byte> image() const { return image_; }
 
  private:
-  void release();
-
   ModelView view_;
-  std::span<const std::byte> image_;
-  std::vector<std::byte> held_;  // empty when mapped
+  std::vector<std::byte> image_;
 };
 
 /// Writes `image` so that it appears under `path` only once it is whole and on the disk.

@@ -10,7 +10,7 @@ namespace {
 
 using namespace testing;
 
-TEST(ModelFile, IsMappedAsWrittenAndMoves) {
+TEST(ModelFile, IsReadAsWrittenAndMoves) {
   const TemporaryFolder folder;
   const Made made = make(shapes::cushion_with_knob(), {1, 0.02});
   ASSERT_TRUE(write_model(folder / "a.model", made.built.image));
@@ -26,6 +26,18 @@ TEST(ModelFile, IsMappedAsWrittenAndMoves) {
   EXPECT_EQ(second.view().size(), made.view().size());
   second = std::move(*ModelFile::open(folder / "a.model"));
   EXPECT_EQ(second.view().size(), made.view().size());
+}
+
+TEST(ModelFile, StaysAsCheckedWhenItsFileIsOverwritten) {
+  const TemporaryFolder folder;
+  const Made made = make(shapes::cushion_with_knob(), {1, 0.02});
+  ASSERT_TRUE(write_model(folder / "a.model", made.built.image));
+  const Result<ModelFile> model = ModelFile::open(folder / "a.model");
+  ASSERT_TRUE(model) << model.error().message;
+  // In place, as cp does, and shorter.
+  put(folder / "a.model", "no model");
+  ASSERT_EQ(model->image().size(), made.built.image.size());
+  EXPECT_EQ(std::memcmp(model->image().data(), made.built.image.data(), made.built.image.size()), 0);
 }
 
 TEST(ModelFile, ErrorsAreOneLineWithTheFilesNameAndTheMend) {
@@ -50,6 +62,9 @@ TEST(ModelFile, ErrorsAreOneLineWithTheFilesNameAndTheMend) {
   EXPECT_TRUE(mentions(error("short.model"), "cut short"));
   put(folder / "mesh.model", "ply\nformat ascii 1.0\n");
   EXPECT_TRUE(mentions(error("mesh.model"), "pliant model build"));
+  put(folder / "huge.model", whole);
+  std::filesystem::resize_file(folder / "huge.model", std::uintmax_t{1} << 40);
+  EXPECT_TRUE(mentions(error("huge.model"), "corrupt"));
 }
 
 TEST(ModelFile, AFailedWriteIsAWriteError) {
