@@ -11,29 +11,9 @@
 #include <cstring>
 #include <system_error>
 
+#include "drivers/common/write_mend.hpp"
+
 namespace pliant {
-
-namespace {
-
-const char* mend(int fault) {
-  switch (fault) {
-    case ENOENT:
-      return "; make the folder first";
-    case ENOSPC:
-    case EDQUOT:
-      return "; free some space";
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "; choose a place that may be written to";
-    case EISDIR:
-      return "; name a file, not a folder";
-    default:
-      return "";
-  }
-}
-
-}  // namespace
 
 AtomicFile::~AtomicFile() {
   abandon();
@@ -49,7 +29,7 @@ void AtomicFile::abandon() {
 Error AtomicFile::failure(const char* doing, int fault) {
   abandon();
   return {ErrorKind::write, fmt::format("{}: cannot be {}: {}{}", target_, doing,
-                                        std::generic_category().message(fault), mend(fault))};
+                                        std::generic_category().message(fault), write_mend(fault))};
 }
 
 Outcome AtomicFile::open(const char* path) {

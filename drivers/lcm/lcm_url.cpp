@@ -86,11 +86,13 @@ Result<LcmUrl> parse_file(std::string_view url, std::string_view path, std::stri
   LcmUrl result;
   result.provider = LcmUrl::Provider::log_file;
   result.writes = false;
+  result.path = path;
   std::string fault;
   each_option(options, [&](std::string_view key, std::string_view value) {
     if (key == "mode") {
       if (value != "r" && value != "w" && value != "a") fault = "mode must be r, w or a";
       result.writes = value != "r";
+      result.append = value == "a";
     } else if (key != "speed" && key != "start_timestamp") {
       fault = "unknown option '" + std::string(key) + "'; known are mode, speed and start_timestamp";
     }

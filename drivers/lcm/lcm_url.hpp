@@ -22,7 +22,11 @@ struct LcmUrl {
   int ttl = 0;              ///< networks that messages may cross, 0: this host only; udp_multicast only
   int receive_buffer = 0;   ///< bytes asked for, 0: the system's default; udp_multicast only
   bool writes = true;       ///< false for a log file that is read
+  bool append = false;      ///< what a log file holds stays, new messages come behind it
+  std::string path;         ///< log_file only
   std::string spelled;      ///< in full, for lcm_create()
+
+  [[nodiscard]] bool writes_log() const { return provider == Provider::log_file && writes; }
 
   /// udpm://[group][:port][?ttl=0..255&recv_buf_size=bytes], memq:// or file://PATH[?mode=r|w|a&speed=&…].
   /// Empty: the environment's LCM_DEFAULT_URL, else kDefaultLcmUrl.

@@ -23,16 +23,24 @@ constexpr long kDepthPauseNs = 400'000;  // eleven parts of a VGA picture take 5
 constexpr std::chrono::seconds kModelEvery{1};
 }  // namespace
 
+Outcome LcmPublisher::check(const LcmSettings& settings) {
+  const auto url = LcmUrl::parse(settings.url);
+  if (!url) return url.error();
+  auto prefix = check_channel_prefix(settings.prefix);
+  if (!prefix) return prefix;
+  if (!url->writes) {
+    return Error{ErrorKind::bad_input, "LCM URL '" + url->spelled + "': add ?mode=w to write a log"};
+  }
+  return url->writes_log() ? LcmLogWriter::check(url->path) : success();
+}
+
 Result<std::unique_ptr<LcmPublisher>> LcmPublisher::create(const LcmSettings& settings,
                                                            std::size_t model_points,
                                                            const SendObserver& observer) {
-  const auto url = LcmUrl::parse(settings.url);
+  auto url = LcmUrl::parse(settings.url);
   if (!url) return url.error();
-  const auto prefix = check_channel_prefix(settings.prefix);
-  if (!prefix) return prefix.error();
-  if (!url->writes) {
-    return Error{ErrorKind::bad_input, "LCM URL '" + settings.url + "': add ?mode=w to write a log"};
-  }
+  if (const auto checked = check(settings); !checked) return checked.error();
+  url->append = url->append || settings.add_to_log;
   std::string warning;
   std::shared_ptr<LcmBus> bus;
   auto opened = LcmBus::open(*url);
@@ -104,10 +112,21 @@ LcmPublisher::LcmPublisher(LcmUrl url, std::shared_ptr<LcmBus> bus, const LcmSet
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-LcmPublisher::~LcmPublisher() {
+void LcmPublisher::finish() noexcept {
+  if (!thread_.joinable()) return;
   stop_.store(true, std::memory_order_release);
   wake();
-  if (thread_.joinable()) thread_.join();
+  thread_.join();
+  if (bus_ != nullptr) bus_->close_log();
+}
+
+Outcome LcmPublisher::log_failure() const {
+  // A log's connection is there from the start; that of a network may come while this is asked.
+  return url_.writes_log() ? bus_->log_failure() : success();
+}
+
+LcmPublisher::~LcmPublisher() {
+  finish();
   if (wake_descriptor_ >= 0) ::close(wake_descriptor_);
 }
 
@@ -227,9 +246,8 @@ bool LcmPublisher::send_waiting(MessageRing& ring, bool tell) noexcept {
 }
 
 bool LcmPublisher::send(const MessageBody& body) noexcept {
-  const char* const channel = channels_[static_cast<std::size_t>(body.kind)].c_str();
-  const bool sent = bus_ != nullptr && lcm_publish(bus_->get(), channel, body.bytes.data(),
-                                                   static_cast<unsigned int>(body.bytes.size())) == 0;
+  const bool sent =
+      bus_ != nullptr && bus_->publish(channels_[static_cast<std::size_t>(body.kind)], body.bytes);
   if (sent) {
     messages_.fetch_add(1, std::memory_order_relaxed);
     bytes_.fetch_add(static_cast<std::int64_t>(body.bytes.size()), std::memory_order_relaxed);

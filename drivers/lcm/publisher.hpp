@@ -25,7 +25,8 @@ struct LcmSettings {
   std::string url;  ///< udpm://…, memq:// or file://PATH?mode=w; empty: $LCM_DEFAULT_URL, else kDefaultLcmUrl
   std::string prefix = "PLIANT";  ///< of the channels' names; 1 to 54 letters, digits, '_', '-', '.', '/'
   int depth_width = 0,
-      depth_height = 0;  ///< of the pictures given to publish_depth(), pixels; 0: never called
+      depth_height = 0;     ///< of the pictures given to publish_depth(), pixels; 0: never called
+  bool add_to_log = false;  ///< what a log file holds stays, whatever the URL's mode says
 };
 
 /// Called on the sending thread, for time and resource counts. Must not throw; may be left null.
@@ -41,7 +42,7 @@ struct SendCounters {
   std::int64_t messages = 0;  ///< handed to the network, status included
   std::int64_t bytes = 0;     ///< their bodies
   std::int64_t unsent = 0;    ///< frames and pictures given up for newer ones because sending did not keep up
-  std::int64_t failures = 0;  ///< messages that LCM refused or that found no network
+  std::int64_t failures = 0;  ///< messages that LCM refused, that found no network or no room in the log
 };
 
 /// publish(), publish_status() and publish_depth() are called by one thread each (or the same); they copy
@@ -52,6 +53,9 @@ class LcmPublisher {
   /// Frames that can wait to be sent: 0.2 s at 30 Hz.
   static constexpr std::size_t kFrameSlots = 6;
 
+  /// What create() would refuse, told without anything being opened: the URL, the prefix, a log file that
+  /// cannot be written.
+  [[nodiscard]] static Outcome check(const LcmSettings& settings);
   /// For models of up to `model_points` points. An error where the URL or the prefix is bad or a log file
   /// cannot be written. A network that is not there is none: warning() tells it in one line with the mend,
   /// the messages are thrown away, and the thread tries again every two seconds.
@@ -63,7 +67,7 @@ class LcmPublisher {
                                                                     const LcmSettings& settings,
                                                                     std::size_t model_points,
                                                                     const SendObserver& observer = {});
-  /// Sends what was handed over, then ends the thread.
+  /// As finish().
   ~LcmPublisher();
   LcmPublisher(const LcmPublisher&) = delete;
   LcmPublisher& operator=(const LcmPublisher&) = delete;
@@ -82,6 +86,11 @@ class LcmPublisher {
 
   /// Waits until everything handed over before was sent, at most `timeout_ms`; false when it was not.
   [[nodiscard]] bool flush(int timeout_ms) const noexcept;
+
+  /// Sends what was handed over, ends the thread and a log file. Nothing may be published after.
+  void finish() noexcept;
+  /// What of a log file could not be written so far, first of all; after finish(): at all.
+  [[nodiscard]] Outcome log_failure() const;
 
   /// Why subscribers may hear nothing, with the mend; empty when all is well. As of create().
   [[nodiscard]] const std::string& warning() const noexcept { return warning_; }

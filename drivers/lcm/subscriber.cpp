@@ -15,9 +15,18 @@ constexpr int kQueueCapacity = 1000;
 constexpr int kMostPerCall = 1000;
 }  // namespace
 
+Outcome LcmSubscriber::check_readable(const LcmUrl& url) {
+  if (!url.writes_log()) return success();
+  return Error{ErrorKind::bad_input,
+               "LCM URL '" + url.spelled + "' would write to the log; use ?mode=r to read it"};
+}
+
 Result<std::unique_ptr<LcmSubscriber>> LcmSubscriber::create(std::string_view url, std::string_view prefix,
                                                              Handlers handlers) {
-  auto bus = LcmBus::open(url);
+  const auto parsed = LcmUrl::parse(url);
+  if (!parsed) return parsed.error();
+  if (const auto readable = check_readable(*parsed); !readable) return readable.error();
+  auto bus = LcmBus::open(*parsed);
   if (!bus) return bus.error();
   return create(std::move(*bus), prefix, std::move(handlers));
 }
@@ -27,6 +36,7 @@ Result<std::unique_ptr<LcmSubscriber>> LcmSubscriber::create(std::shared_ptr<Lcm
   const auto checked = check_channel_prefix(prefix);
   if (!checked) return checked.error();
   const LcmUrl& url = bus->url();
+  if (const auto readable = check_readable(url); !readable) return readable.error();
   // LCM would test the same for ten seconds.
   if (url.provider == LcmUrl::Provider::udp_multicast && !multicast_comes_back(url)) {
     return Error{ErrorKind::device, multicast_advice(url, "what is sent does not come back to this host")};

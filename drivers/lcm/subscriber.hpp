@@ -44,6 +44,8 @@ class LcmSubscriber {
   [[nodiscard]] static Result<std::unique_ptr<LcmSubscriber>> create(std::shared_ptr<LcmBus> bus,
                                                                      std::string_view prefix,
                                                                      Handlers handlers = {});
+  /// A URL that writes a log is refused, before the log is touched.
+  [[nodiscard]] static Outcome check_readable(const LcmUrl& url);
   ~LcmSubscriber();
   LcmSubscriber(const LcmSubscriber&) = delete;
   LcmSubscriber& operator=(const LcmSubscriber&) = delete;

@@ -59,6 +59,11 @@ void CaptureShow::show(const DepthFrame& frame, const ObjectCapture& capture, co
   ++pictures_;
 }
 
+Outcome CaptureShow::finish() {
+  publisher_->finish();
+  return publisher_->log_failure();
+}
+
 void CaptureShow::renew_model(const ObjectCapture& capture) {
   points_.resize(kMostPoints);
   normals_.resize(kMostPoints);

@@ -22,6 +22,8 @@ class CaptureShow {
 
   void show(const DepthFrame& frame, const ObjectCapture& capture, const CaptureStatus& status,
             const std::string& words);
+  /// Sends what is left; what a log could not take.
+  [[nodiscard]] Outcome finish();
 
  private:
   static constexpr std::size_t kMostPoints = 6000;

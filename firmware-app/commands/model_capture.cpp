@@ -46,6 +46,7 @@ constexpr std::uintmax_t kLeastRoom = 4'000'000;
 struct Taken {
   SourceEvent last = SourceEvent::end;
   std::string fault;
+  bool log_failed = false;
   std::int64_t bad_frames = 0;  ///< and those without a known pose, where poses were given
 };
 
@@ -92,6 +93,11 @@ Taken take_pictures(DepthSource& source, const CaptureOptions& options, ObjectCa
     line.show(guide.line());
   }
   line.clear();
+  if (show != nullptr)
+    if (const Outcome logged = show->finish(); !logged) {
+      print_warning(logged.error().message);
+      taken.log_failed = true;
+    }
   return taken;
 }
 
@@ -227,6 +233,7 @@ int capture(const CaptureOptions& given) {
   const int code = write_captured_model(
       {options.output, options.ply, options.capture.clearance, usual_noise(sensor), options.material}, object,
       joint);
+  if (code == kExitDone && taken->log_failed) return kExitFailed;
   if (code == kExitDone && taken->last == SourceEvent::lost) return report({ErrorKind::device, taken->fault});
   return code;
 }

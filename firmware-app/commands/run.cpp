@@ -47,7 +47,7 @@ void warn_of_missing_kernels(Kernels kernels) {
 
 int finish(const RunOptions& options, const RunEnd& end, AtomicFile& stats) {
   const RunFigures& figures = end.figures;
-  bool failed = end.files_failed;
+  bool failed = end.files_failed || end.log_failed;
   if (!options.stats.empty()) {
     const std::string json = stats_json(figures);
     Outcome written = stats.write(std::as_bytes(std::span(json)));

@@ -42,9 +42,15 @@ std::string stats_json(const RunFigures& f) {
   Json stages;
   for (int i = 0; i <= kStageCount; ++i)
     stages[kStageNames[static_cast<std::size_t>(i)]] = times(f.profile.stage(i));
-  Json stats = {{"frames", f.frames()},     {"tracked", f.tracked},          {"lost", f.lost},
-                {"searching", f.searching}, {"dropped", f.dropped},          {"bad_frames", f.bad_frames},
-                {"stages", stages},         {"latency_us", times(f.latency)}};
+  Json stats = {{"frames", f.frames()},
+                {"tracked", f.tracked},
+                {"lost", f.lost},
+                {"searching", f.searching},
+                {"dropped", f.dropped},
+                {"bad_frames", f.bad_frames},
+                {"send_failures", f.sent.failures},
+                {"stages", stages},
+                {"latency_us", times(f.latency)}};
   // A build with a sanitizer has no count to tell; a zero would be a claim.
   stats["heap_calls_after_start"] = f.heap_watched ? Json(f.heap_calls) : Json(nullptr);
   stats["page_faults_after_start"] = f.page_faults;

@@ -68,10 +68,18 @@ void warn(const RunSettings& settings, const std::string& line) {
   if (settings.warn && !line.empty()) settings.warn(line);
 }
 
+void look_at_log(const RunSettings& settings, const LcmPublisher* publisher, const char* more, RunEnd& end) {
+  if (publisher == nullptr || end.log_failed) return;
+  const Outcome failure = publisher->log_failure();
+  end.log_failed = !failure;
+  if (!failure) warn(settings, failure.error().message + more);
+}
+
 /// Waits for the tracking thread, shows progress, passes a stop on, tells of a failed write as soon as it is
 /// known.
 void supervise(const RunSettings& settings, LiveFigures& live, const std::atomic<bool>& done,
-               Capture& capture, FrameRing& ring, const FrameFiles* files, RunEnd& end) {
+               Capture& capture, FrameRing& ring, const FrameFiles* files, const LcmPublisher* publisher,
+               RunEnd& end) {
   while (!done.load(std::memory_order_acquire)) {
     sleep_until_ns(monotonic_ns() + 20'000'000);
     live.captured.store(capture.beats(), std::memory_order_relaxed);
@@ -88,6 +96,7 @@ void supervise(const RunSettings& settings, LiveFigures& live, const std::atomic
       end.files_failed = !failure.empty();
       if (end.files_failed) warn(settings, failure + "; tracking goes on without files");
     }
+    look_at_log(settings, publisher, "; tracking goes on, messages are missing in the log", end);
     if (settings.progress) settings.progress(live);
   }
 }
@@ -136,7 +145,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   if (settings.lcm_url != "none") {
     Result<std::unique_ptr<LcmPublisher>> made = LcmPublisher::create(
         {settings.lcm_url, settings.lcm_prefix, settings.publish_depth ? camera.width : 0,
-         settings.publish_depth ? camera.height : 0},
+         settings.publish_depth ? camera.height : 0, settings.add_to_log},
         model.size(), send_watch.observer());
     if (!made) return made.error();
     publisher = std::move(*made);
@@ -186,7 +195,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
     return started.error();
   }
 
-  supervise(settings, live, done, capture, ring, files.get(), end);
+  supervise(settings, live, done, capture, ring, files.get(), publisher.get(), end);
   tracking_thread.join();
   capture.stop();
   ring.abort();
@@ -197,8 +206,9 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
   }
   loop.publish_end(figures);
   if (publisher != nullptr) {
-    static_cast<void>(publisher->flush(300));
+    publisher->finish();
     figures.sent = publisher->counters();
+    look_at_log(settings, publisher.get(), "", end);
     publisher.reset();
   }
   if (files != nullptr) {

@@ -22,6 +22,7 @@ struct RunSettings {
   TrackSettings track;
   std::string lcm_url;  ///< "none" publishes nothing
   std::string lcm_prefix = "PLIANT";
+  bool add_to_log = false;  ///< see LcmSettings
   bool publish_depth = false;
   bool realtime = false;          ///< frames come at their stamps' pace and the newest wins
   std::int64_t frame_limit = -1;  ///< frames to take from the source, -1 for all
@@ -50,6 +51,7 @@ struct RunEnd {
   bool device_lost = false;
   std::string fault;          ///< the latest fault of the source, empty when there was none
   bool files_failed = false;  ///< a write failed; `warn` was told
+  bool log_failed = false;    ///< so did one of the messages' log
 };
 
 /// Runs until the source ends, the limit is reached, the device is lost or a StopSignal comes. An error when

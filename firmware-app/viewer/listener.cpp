@@ -25,6 +25,7 @@ Listener::~Listener() {
 Outcome Listener::connect() {
   const auto url = LcmUrl::parse(link_.url);
   if (!url) return url.error();
+  if (const Outcome readable = LcmSubscriber::check_readable(*url); !readable) return readable;
   link_.url = url->spelled;
   next_try_ = Clock::now() + kRetry;
   auto bus = LcmBus::open(*url);

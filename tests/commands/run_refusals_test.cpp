@@ -1,6 +1,8 @@
 // What pliant run refuses, and how it says so.
 #include <sys/stat.h>
 
+#include <nlohmann/json.hpp>
+
 #include "drivers/images/png.hpp"
 #include "tests/commands/program.hpp"
 
@@ -62,6 +64,22 @@ TEST_F(RunRefusals, BadLcmUrlsAreRefused) {
   expect_refused(run_pliant({"run", "--source", "simulated:box", "--lcm-url", "udpm://1.2.3.4:1"}), 2,
                  {"1.2.3.4"});
   expect_refused(run_pliant({"run", "--source", "simulated:box", "--lcm-url", "bogus"}), 2, {"bogus"});
+}
+
+TEST_F(RunRefusals, ALogThatTheDiskHasNoRoomForIsAWriteFailure) {
+  expect_refused(run_pliant({"run", "--source", "simulated:box?frames=3&width=160&height=120", "--lcm-url",
+                             "file:///dev/full?mode=w", "--stats", at("s.json")}),
+                 3, {"/dev/full", "No space left on device", "free some space"});
+  const nlohmann::json stats = nlohmann::json::parse(read_file(at("s.json")));
+  EXPECT_GT(stats["send_failures"].get<int>(), 3);
+}
+
+TEST_F(RunRefusals, ListeningNeverWritesALog) {
+  write_file(at("run.log"), "what was there");
+  expect_refused(
+      run_pliant({"snapshot", "--lcm-url", "file://" + at("run.log") + "?mode=w", "-o", at("a.png")}), 2,
+      {"run.log", "use ?mode=r"});
+  EXPECT_EQ(read_file(at("run.log")), "what was there");
 }
 
 TEST_F(RunRefusals, AFolderThatHoldsPointsIsRefused) {

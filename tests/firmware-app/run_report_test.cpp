@@ -14,6 +14,7 @@ TEST(RunReport, StatsHoldEveryKeyOfTheContract) {
   figures.searching = 1;
   figures.dropped = 4;
   figures.bad_frames = 5;
+  figures.sent.failures = 6;
   figures.output_sha256 = "00ff";
   figures.latency.add(1'234'567);
   const nlohmann::json stats = nlohmann::json::parse(stats_json(figures));
@@ -23,6 +24,7 @@ TEST(RunReport, StatsHoldEveryKeyOfTheContract) {
   EXPECT_EQ(stats["searching"], 1);
   EXPECT_EQ(stats["dropped"], 4);
   EXPECT_EQ(stats["bad_frames"], 5);
+  EXPECT_EQ(stats["send_failures"], 6);
   for (const char* stage :
        {"surface", "predict", "associate", "align", "label", "regroup", "deform", "detect", "total"})
     for (const char* figure : {"median_us", "p99_us", "max_us"})

@@ -2,12 +2,15 @@
 #include "drivers/lcm/publisher.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 
+#include "drivers/lcm/lcm_log.hpp"
 #include "drivers/lcm/subscriber.hpp"
 #include "tests/lcm/sample_result.hpp"
 
@@ -156,6 +159,101 @@ TEST(LcmPublisher, EndsOnlyWhenAllIsSent) {
   EXPECT_EQ((*subscriber)->counters().garbage, 0);
 }
 
+TEST(LcmPublisher, AWrittenLogIsALog) {
+  const TemporaryFile file("written.log");
+  std::ofstream(file.path()) << "what was there";
+  const std::string body(100'000, 'b');
+  const auto bytes = [](const std::string& text) {
+    return std::span(static_cast<const std::uint8_t*>(static_cast<const void*>(text.data())), text.size());
+  };
+  for (const char* mode : {"w", "a"}) {
+    const auto bus = LcmBus::open("file://" + file.path() + "?mode=" + mode);
+    ASSERT_TRUE(bus) << bus.error().message;
+    EXPECT_TRUE((*bus)->publish("EMPTY", {}));
+    EXPECT_TRUE((*bus)->publish("BODY", bytes(body)));
+    (*bus)->close_log();
+    EXPECT_TRUE((*bus)->log_failure());
+  }
+  // As LCM itself reads it.
+  lcm_eventlog_t* const log = lcm_eventlog_create(file.path().c_str(), "r");
+  ASSERT_NE(log, nullptr);
+  for (int run = 0; run < 2; ++run) {
+    for (std::int64_t number = 0; number < 2; ++number) {
+      lcm_eventlog_event_t* const event = lcm_eventlog_read_next_event(log);
+      ASSERT_NE(event, nullptr);
+      EXPECT_EQ(event->eventnum, number);
+      EXPECT_GT(event->timestamp, 1'600'000'000'000'000);
+      EXPECT_EQ(std::string(event->channel), number == 0 ? "EMPTY" : "BODY");
+      EXPECT_EQ(event->datalen, number == 0 ? 0 : std::ssize(body));
+      lcm_eventlog_free_event(event);
+    }
+  }
+  EXPECT_EQ(lcm_eventlog_read_next_event(log), nullptr);
+  lcm_eventlog_destroy(log);
+}
+
+TEST(LcmPublisher, AFullDiskIsToldAndTheLogEndsWithAWholeMessage) {
+  const SampleResult sample(1000);
+  TrackMessages messages(sample.rest, kSampleModelId);
+  {
+    const auto publisher = LcmPublisher::create({.url = "file:///dev/full?mode=w", .prefix = "PLIANT"}, 1000);
+    ASSERT_TRUE(publisher) << publisher.error().message;
+    (*publisher)->publish(messages.encode(sample.result), 1);
+    (*publisher)->finish();
+    const Outcome failure = (*publisher)->log_failure();
+    ASSERT_FALSE(failure);
+    EXPECT_EQ(failure.error().kind, ErrorKind::write);
+    EXPECT_NE(failure.error().message.find("/dev/full"), std::string::npos) << failure.error().message;
+    EXPECT_NE(failure.error().message.find("; free some space"), std::string::npos);
+    EXPECT_EQ((*publisher)->counters().messages, 0);
+    EXPECT_GT((*publisher)->counters().failures, 0);
+  }
+  // A limit of the file's size cuts a write off in its middle, as a full disk does.
+  const TemporaryFile file("limited.log");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const auto publisher =
+      LcmPublisher::create({.url = "file://" + file.path() + "?mode=w", .prefix = "PLIANT"}, 1000);
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  const rlimit little{10'000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &little);
+  for (int frame = 0; frame < 10; ++frame) {
+    (*publisher)->publish(messages.encode(sample.result), frame);
+    EXPECT_TRUE((*publisher)->flush(10000));
+  }
+  setrlimit(RLIMIT_FSIZE, &before);
+  (*publisher)->publish(messages.encode(sample.result), 10);  // there is room again
+  (*publisher)->finish();
+  std::signal(SIGXFSZ, handler);
+  EXPECT_FALSE((*publisher)->log_failure());
+  const SendCounters sent = (*publisher)->counters();
+  EXPECT_GT(sent.failures, 0);
+  auto log = LcmLog::open(file.path());
+  ASSERT_TRUE(log) << log.error().message;
+  LcmLogEvent event;
+  std::int64_t events = 0;
+  for (; log->next(event); ++events) EXPECT_EQ(event.number, events);
+  EXPECT_EQ(events, sent.messages);
+  EXPECT_EQ(log->damages(), 0);
+}
+
+TEST(LcmPublisher, CheckOpensNothing) {
+  const TemporaryFile file("checked.log");
+  std::ofstream(file.path()) << "what was there";
+  EXPECT_TRUE(LcmPublisher::check({.url = "file://" + file.path() + "?mode=w"}));
+  EXPECT_EQ(std::filesystem::file_size(file.path()), 14U);
+  const TemporaryFile none("none");
+  EXPECT_TRUE(LcmPublisher::check({.url = "file://" + none.path() + "?mode=w"}));
+  EXPECT_FALSE(std::filesystem::exists(none.path()));
+  for (const std::string& path :
+       {none.path() + "/x.log", std::filesystem::temp_directory_path().string(), file.path() + "/x"}) {
+    const Outcome checked = LcmPublisher::check({.url = "file://" + path + "?mode=w"});
+    ASSERT_FALSE(checked) << path;
+    EXPECT_EQ(checked.error().kind, ErrorKind::write);
+  }
+}
+
 TEST(LcmPublisher, BadInputIsOneLine) {
   for (const LcmSettings& settings :
        {LcmSettings{.url = "nonsense", .prefix = "PLIANT"}, LcmSettings{.url = "tcpq://", .prefix = "PLIANT"},
@@ -197,6 +295,18 @@ TEST(LcmSubscriber, CountsGarbageOnItsChannels) {
   (*subscriber)->handle(1000);
   EXPECT_EQ((*subscriber)->counters().garbage, 5);
   EXPECT_EQ((*subscriber)->counters().total(), 0);
+}
+
+TEST(LcmSubscriber, LeavesALogAloneThatItsUrlWouldWrite) {
+  const TemporaryFile file("kept.log");
+  std::ofstream(file.path()) << "what was there";
+  for (const char* mode : {"w", "a"}) {
+    const auto subscriber = LcmSubscriber::create("file://" + file.path() + "?mode=" + mode, "PLIANT");
+    ASSERT_FALSE(subscriber);
+    EXPECT_EQ(subscriber.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(subscriber.error().message.find("?mode=r"), std::string::npos) << subscriber.error().message;
+  }
+  EXPECT_EQ(std::filesystem::file_size(file.path()), 14U);
 }
 
 TEST(LcmSubscriber, RefusesWhatIsNoLog) {
