@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "drivers/common/printable.hpp"
 #include "drivers/geometry_files/atomic_file.hpp"
 #include "drivers/recording/text_file.hpp"
 #include "firmware-app/commands/commands.hpp"
@@ -37,7 +38,10 @@ int plot(const PlotOptions& options) {
 
   const double height = stats_plot_height(*stats);
   Svg svg(kPlotWidth, height + (errors.empty() ? 0 : kErrorPlotHeight));
-  draw_stats_plot(*stats, std::filesystem::path(options.stats).filename().string(), 0, svg);
+  // A file's name may be any bytes; an SVG is UTF-8.
+  constexpr std::size_t kLongestName = 255;
+  draw_stats_plot(*stats, printable(std::filesystem::path(options.stats).filename().string(), kLongestName),
+                  0, svg);
   if (!errors.empty()) draw_error_plot(errors, height, svg);
   const std::string picture = svg.finished();
   const std::string output = options.output.empty()

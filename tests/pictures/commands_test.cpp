@@ -51,6 +51,16 @@ TEST_F(PictureCommands, PlotAndSnapshotDrawARun) {
   EXPECT_EQ(size_of(png), std::pair(320, 240)) << "the camera's own size, since depth is in the log";
 }
 
+TEST_F(PictureCommands, APlotIsUtf8WhateverItsFilesName) {
+  const Ended run = run_pliant({"run", "--source", "simulated:box?frames=3&width=160&height=120", "--lcm-url",
+                                "none", "--stats", at("a\xff\xc3\xa4<.json")});
+  ASSERT_NE(run.code, 2) << run.err;
+  ASSERT_EQ(run_pliant({"plot", at("a\xff\xc3\xa4<.json"), "-o", at("a.svg")}).code, 0);
+  const std::string svg = read_file(at("a.svg"));
+  EXPECT_NE(svg.find("a?\xc3\xa4&lt;.json"), std::string::npos) << svg.substr(0, 600);
+  EXPECT_EQ(svg.find('\xff'), std::string::npos);
+}
+
 TEST_F(PictureCommands, WhatCannotBeDrawnIsRefusedInOneLine) {
   write_file(at("empty.json"), "{}");
   write_file(at("broken.json"), "{\"stages\": ");
