@@ -62,7 +62,9 @@ int run_program(int count, char** words) {
 }  // namespace pliant
 
 int main(int count, char** words) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that went away shows as a failed write
+  // A reader that went away, and a limit of a file's size, show as a failed write.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return pliant::run_program(count, words);
   } catch (const std::bad_alloc&) {

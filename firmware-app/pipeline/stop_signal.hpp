@@ -1,11 +1,13 @@
-// SIGINT and SIGTERM end a run well.
+// SIGINT, SIGTERM and SIGHUP end a run well.
 #pragma once
 
 #include <csignal>
 
 namespace pliant {
 
-/// While one lives, SIGINT and SIGTERM only set requested(). A second one ends the program at once.
+/// While one lives, SIGINT and SIGTERM only set requested(); a second one ends the program at once. SIGHUP,
+/// that of a terminal which closes, sets it too, however often it comes. Where it was ignored (nohup) it
+/// stays so; a ReloadSignal made later takes it for itself.
 class StopSignal {
  public:
   StopSignal();
@@ -17,6 +19,7 @@ class StopSignal {
  private:
   struct sigaction before_int_ {};
   struct sigaction before_term_ {};
+  struct sigaction before_hup_ {};
 };
 
 }  // namespace pliant

@@ -1,7 +1,8 @@
-// SIGINT and SIGTERM end a run with its outputs whole.
+// SIGINT, SIGTERM and, of a terminal that closes, SIGHUP end a run with its outputs whole.
 #include <signal.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "drivers/lcm/subscriber.hpp"
@@ -48,8 +49,52 @@ TEST_P(Signals, EndARunWell) {
   EXPECT_EQ(static_cast<std::size_t>(last.tracked), tracked);
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, Signals, testing::Values(SIGINT, SIGTERM),
-                         [](const auto& about) { return about.param == SIGINT ? "SIGINT" : "SIGTERM"; });
+INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGINT, SIGTERM, SIGHUP), [](const auto& about) {
+  return about.param == SIGINT ? "SIGINT" : about.param == SIGTERM ? "SIGTERM" : "SIGHUP";
+});
+
+/// Waits until `folder` holds more than three files.
+void wait_for_files(const std::string& folder) {
+  for (int i = 0; i < 1000; ++i) {
+    std::error_code ignored;
+    if (std::filesystem::exists(folder, ignored) && count_files(folder) > 3) return;
+    usleep(20'000);
+  }
+}
+
+class Hangup : public CommandTest {
+ protected:
+  [[nodiscard]] pid_t start_recording() const {
+    const pid_t process = start_pliant(
+        {"record", "--source", "simulated:cushion?frames=100000&width=320&height=240", "-o", at("r")},
+        folder_);
+    wait_for_files(at("r/depth"));
+    return process;
+  }
+};
+
+TEST_F(Hangup, EndsARecordingWell) {
+  const pid_t process = start_recording();
+  // From the shell and from the kernel.
+  kill(process, SIGHUP);
+  usleep(1000);
+  kill(process, SIGHUP);
+  const Ended ended = wait_for(process, folder_);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("recorded "), std::string::npos) << ended.out;
+}
+
+TEST_F(Hangup, IsIgnoredWhereItWas) {
+  const auto handler = std::signal(SIGHUP, SIG_IGN);  // as nohup does
+  const pid_t process = start_recording();
+  std::signal(SIGHUP, handler);
+  kill(process, SIGHUP);
+  const std::size_t files = count_files(at("r/depth"));
+  for (int i = 0; i < 500 && count_files(at("r/depth")) < files + 10; ++i) usleep(20'000);
+  EXPECT_GE(count_files(at("r/depth")), files + 10) << "it goes on";
+  kill(process, SIGTERM);
+  EXPECT_EQ(wait_for(process, folder_).code, 0);
+}
 
 }  // namespace
 }  // namespace pliant::test
