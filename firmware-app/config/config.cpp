@@ -1,5 +1,6 @@
 #include "firmware-app/config/config.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -66,6 +67,13 @@ Result<Config> read_config(const std::string& path) {
       make_relative_to(folder, file);
       config.source = std::string(scheme) + file;
     }
+  constexpr std::string_view kLogFile = "file://";
+  if (config.lcm.url.starts_with(kLogFile)) {
+    const std::size_t options = std::min(config.lcm.url.find('?'), config.lcm.url.size());
+    std::string file = config.lcm.url.substr(kLogFile.size(), options - kLogFile.size());
+    make_relative_to(folder, file);
+    config.lcm.url = std::string(kLogFile) + file + config.lcm.url.substr(options);
+  }
   return config;
 }
 

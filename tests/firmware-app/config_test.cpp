@@ -121,6 +121,20 @@ TEST(Config, PathsAreRelativeToTheFile) {
   EXPECT_EQ(config->sensor.description, "/abs/s.toml");
 }
 
+TEST(Config, TheLogsPathIsRelativeToTheFile) {
+  const test::TemporaryFolder folder;
+  const auto url_of = [&](const std::string& url) {
+    std::ofstream(folder / "p.toml") << "[lcm]\nurl = \"" << url << "\"\n";
+    const Result<Config> config = read_config((folder / "p.toml").string());
+    EXPECT_TRUE(config);
+    return config ? config->lcm.url : std::string();
+  };
+  EXPECT_EQ(url_of("file://logs/run.log?mode=w"), "file://" + (folder / "logs/run.log").string() + "?mode=w");
+  EXPECT_EQ(url_of("file://run.log"), "file://" + (folder / "run.log").string());
+  for (const char* same : {"file:///abs/run.log?mode=w", "udpm://239.255.76.67:7667?ttl=0", "none", ""})
+    EXPECT_EQ(url_of(same), same);
+}
+
 TEST(Config, MissingFileIsBadInput) {
   const Result<Config> config = read_config("/nowhere/p.toml");
   ASSERT_FALSE(config);
