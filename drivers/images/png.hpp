@@ -48,12 +48,12 @@ class PngReader {
 
 /// `png` becomes the file's bytes, in its old storage. ErrorKind::write when the size is unusable.
 [[nodiscard]] Outcome encode_png_grey16(const GreyView16& image, std::vector<std::byte>& png);
-/// Writes a 16-bit grey PNG; ErrorKind::write with the file and the system's reason. `scratch` keeps its
-/// storage for the next picture.
+/// Writes a 16-bit grey PNG, which appears once it is whole; ErrorKind::write with the file and the reason.
+/// `scratch` keeps its storage for the next picture.
 [[nodiscard]] Outcome write_png_grey16(const std::filesystem::path& file, const GreyView16& image,
                                        std::vector<std::byte>& scratch);
 [[nodiscard]] Outcome write_png_grey16(const std::filesystem::path& file, const GreyView16& image);
-/// Writes an 8-bit colour PNG from `rgb` (3 · width · height bytes, rows from the top).
+/// Likewise an 8-bit colour PNG, from `rgb` (3 · width · height bytes, rows from the top).
 [[nodiscard]] Outcome write_png_rgb8(const std::filesystem::path& file, int width, int height,
                                      std::span<const std::uint8_t> rgb);
 

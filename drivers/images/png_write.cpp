@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 #include <string>
 
+#include "drivers/geometry_files/atomic_file.hpp"
 #include "drivers/images/png.hpp"
 
 namespace pliant {
@@ -103,18 +103,6 @@ Outcome encode(const Rows& rows, std::vector<std::byte>& png) {
   return success();
 }
 
-Outcome store(const std::filesystem::path& file, const std::vector<std::byte>& bytes) {
-  std::FILE* out = std::fopen(file.c_str(), "wb");
-  if (out == nullptr) return failed(fmt::format("{}: {}", file.string(), std::strerror(errno)));
-  errno = 0;
-  const bool whole = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-  const int write_error = errno;
-  const bool closed = std::fclose(out) == 0;
-  if (!whole || !closed)
-    return failed(fmt::format("{}: {}", file.string(), std::strerror(whole ? errno : write_error)));
-  return success();
-}
-
 }  // namespace
 
 Outcome encode_png_grey16(const GreyView16& image, std::vector<std::byte>& png) {
@@ -129,7 +117,7 @@ Outcome encode_png_grey16(const GreyView16& image, std::vector<std::byte>& png) 
 Outcome write_png_grey16(const std::filesystem::path& file, const GreyView16& image,
                          std::vector<std::byte>& scratch) {
   if (Outcome encoded = encode_png_grey16(image, scratch); !encoded) return encoded;
-  return store(file, scratch);
+  return write_whole_file(file.c_str(), scratch, false);
 }
 
 Outcome write_png_grey16(const std::filesystem::path& file, const GreyView16& image) {
@@ -148,7 +136,7 @@ Outcome write_png_rgb8(const std::filesystem::path& file, int width, int height,
   }
   std::vector<std::byte> png;
   if (Outcome encoded = encode(rows, png); !encoded) return encoded;
-  return store(file, png);
+  return write_whole_file(file.c_str(), png, false);
 }
 
 }  // namespace pliant

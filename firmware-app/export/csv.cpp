@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
+#include <span>
 
+#include "drivers/geometry_files/atomic_file.hpp"
 #include "firmware-app/export/exporters.hpp"
 #include "firmware-app/outputs/status_counts.hpp"
 #include "firmware-app/outputs/words.hpp"
@@ -15,38 +14,34 @@ namespace pliant {
 
 namespace {
 
-/// One table; the first failure stays and shows in finish().
+/// One table, which appears when it is finished; the first failure stays and shows there.
 class Table {
  public:
   Outcome open(const std::string& path, const std::string& columns) {
-    path_ = path;
-    file_.reset(std::fopen(path.c_str(), "we"));
-    if (!file_) return failure();
+    if (Outcome opened = file_.open(path.c_str()); !opened) return opened;
     row(columns);
     return success();
   }
   void row(const std::string& text) {
-    failed_ = failed_ || std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() ||
-              std::fputc('\n', file_.get()) == EOF;
+    text_.append(text).append("\n");
     ++rows_;
+    if (text_.size() >= kAtOnce) flush();
   }
   Outcome finish() {
-    if (failed_ || std::fflush(file_.get()) != 0 || std::fclose(file_.release()) != 0) return failure();
-    return success();
+    flush();
+    return state_ ? file_.commit(false) : state_;
   }
   [[nodiscard]] std::int64_t rows() const { return rows_ - 1; }
 
  private:
-  [[nodiscard]] Error failure() const {
-    return {ErrorKind::write, fmt::format("cannot write {}: {}", path_,
-                                          std::strerror(errno))};  // NOLINT(concurrency-mt-unsafe)
+  static constexpr std::size_t kAtOnce = 1U << 16;
+  void flush() {
+    if (state_) state_ = file_.write(std::as_bytes(std::span(text_)));
+    text_.clear();
   }
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Closer> file_;
-  std::string path_;
-  bool failed_ = false;
+  AtomicFile file_;
+  std::string text_;
+  Outcome state_ = success();
   std::int64_t rows_ = 0;
 };
 

@@ -1,11 +1,8 @@
 #include "firmware-app/export/mcap_writer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
+#include <span>
 
 namespace pliant {
 
@@ -76,23 +73,17 @@ std::uint32_t crc32(std::string_view bytes, std::uint32_t before) {
   return ~crc;
 }
 
-Error McapWriter::failure() const {
-  return {ErrorKind::write,
-          fmt::format("cannot write {}: {}", path_, std::strerror(errno))};  // NOLINT(concurrency-mt-unsafe)
-}
-
 Result<McapWriter> McapWriter::create(const std::string& path, std::string_view library) {
   McapWriter writer;
-  writer.path_ = path;
-  writer.file_.reset(std::fopen(path.c_str(), "wbe"));
-  if (!writer.file_) return writer.failure();
+  writer.file_ = std::make_unique<AtomicFile>();
+  if (Outcome opened = writer.file_->open(path.c_str()); !opened) return opened.error();
   if (Outcome put = writer.put(kMagic); !put) return put.error();
   if (Outcome put = writer.put(Fields().text("").text(library).record(Op::header)); !put) return put.error();
   return writer;
 }
 
 Outcome McapWriter::put(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) return failure();
+  if (Outcome written = file_->write(std::as_bytes(std::span(bytes))); !written) return written;
   at_ += bytes.size();
   crc_ = crc32(bytes, crc_);
   return success();
@@ -219,8 +210,7 @@ Outcome McapWriter::finish() {
   const std::string all = summary + offsets + start;
   if (Outcome done = put(all + Fields().u32(crc32(all)).bytes()); !done) return done;
   if (Outcome done = put(kMagic); !done) return done;
-  if (std::fflush(file_.get()) != 0 || std::fclose(file_.release()) != 0) return failure();
-  return success();
+  return file_->commit(false);
 }
 
 }  // namespace pliant

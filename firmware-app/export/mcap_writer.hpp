@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,12 +10,13 @@
 #include <vector>
 
 #include "drivers/common/result.hpp"
+#include "drivers/geometry_files/atomic_file.hpp"
 
 namespace pliant {
 
 class McapWriter {
  public:
-  /// Makes or replaces the file. Every failure is an ErrorKind::write.
+  /// Makes or replaces the file, which appears when it is finished. Every failure is an ErrorKind::write.
   [[nodiscard]] static Result<McapWriter> create(const std::string& path, std::string_view library);
 
   /// All schemas and channels are announced before the first message. Returns the new one's number.
@@ -30,9 +30,6 @@ class McapWriter {
   [[nodiscard]] Outcome finish();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   struct ChunkIndex {
     std::uint64_t first_time = 0, last_time = 0, offset = 0, bytes = 0, index_bytes = 0, content_bytes = 0;
     std::map<std::uint16_t, std::uint64_t> index_offsets;
@@ -43,10 +40,8 @@ class McapWriter {
 
   [[nodiscard]] Outcome put(std::string_view bytes);
   [[nodiscard]] Outcome end_chunk();
-  [[nodiscard]] Error failure() const;
 
-  std::unique_ptr<std::FILE, Closer> file_;
-  std::string path_;
+  std::unique_ptr<AtomicFile> file_;
   std::uint64_t at_ = 0;                         // bytes written
   std::uint32_t crc_ = 0;                        // of them
   std::vector<std::string> schemas_, channels_;  // their records

@@ -80,7 +80,7 @@ bool is_frame_file(const std::string& name) {
 }  // namespace
 
 Result<std::unique_ptr<LogExporter>> export_tum(const std::string& path) {
-  Result<TrajectoryWriter> writer = TrajectoryWriter::create(path);
+  Result<TrajectoryWriter> writer = TrajectoryWriter::create(path, TrajectoryWriter::Appears::when_whole);
   if (!writer) return writer.error();
   return std::unique_ptr<LogExporter>(std::make_unique<TumExporter>(std::move(*writer), path));
 }

@@ -58,7 +58,8 @@ Result<std::unique_ptr<FrameFiles>> FrameFiles::create(const FrameFilesSettings&
     if (Outcome ready = prepare_folder(settings.points); !ready) return ready.error();
   std::unique_ptr<FrameFiles> files(new FrameFiles(settings, rest));
   if (!settings.trajectory.empty()) {
-    Result<TrajectoryWriter> trajectory = TrajectoryWriter::create(settings.trajectory);
+    Result<TrajectoryWriter> trajectory =
+        TrajectoryWriter::create(settings.trajectory, TrajectoryWriter::Appears::by_lines);
     if (!trajectory) return trajectory.error();
     files->trajectory_.emplace(std::move(*trajectory));
   }

@@ -1,8 +1,10 @@
 #include "firmware-app/outputs/frame_files.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -65,6 +67,33 @@ TEST_F(FrameFilesTest, WritesTrackedFramesOnly) {
     ++lines;
   }
   EXPECT_EQ(lines, 30);
+}
+
+TEST_F(FrameFilesTest, ATrajectoryGrowsByWholeLines) {
+  const std::string path = (folder_ / "t.txt").string();
+  const auto text = [&path] {
+    std::ostringstream all;
+    all << std::ifstream(path).rdbuf();
+    return all.str();
+  };
+  Result<TrajectoryWriter> writer = TrajectoryWriter::create(path, TrajectoryWriter::Appears::by_lines);
+  ASSERT_TRUE(writer) << writer.error().message;
+  ASSERT_TRUE(writer->write(1'000'000, RigidTransform{}));
+  const std::string line = "1.000000 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(text(), line) << "it can be followed";
+  // A limit of the file's size cuts a write off in its middle, as a full disk does.
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit little{line.size() + 5, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &little);
+  const Outcome refused = writer->write(1'000'000, RigidTransform{});
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::write);
+  EXPECT_TRUE(writer->finish());
+  EXPECT_EQ(text(), line);
 }
 
 TEST_F(FrameFilesTest, FrameWithoutItsBaseRegionHasNoTrajectoryLine) {
