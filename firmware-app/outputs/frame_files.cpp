@@ -7,6 +7,8 @@
 #include <iterator>
 #include <system_error>
 
+#include "drivers/geometry_files/output_place.hpp"
+
 namespace pliant {
 
 namespace {
@@ -34,7 +36,8 @@ Outcome prepare_folder(const std::string& folder) {
   if (fault)
     return Error{ErrorKind::write,
                  fmt::format("cannot read the points folder {}: {}", folder, fault.message())};
-  return success();
+  // The first frame may be tracked long after the start.
+  return check_output_place(folder + "/000000.ply", 0);
 }
 
 }  // namespace

@@ -69,6 +69,14 @@ TEST_F(FrameFilesTest, WritesTrackedFramesOnly) {
   EXPECT_EQ(lines, 30);
 }
 
+TEST_F(FrameFilesTest, AFolderThatTakesNoFileIsRefusedAtTheStart) {
+  // Nobody, not even root, can make a file there.
+  const Result<std::unique_ptr<FrameFiles>> files = FrameFiles::create({"", "/proc/self", true}, rest_);
+  ASSERT_FALSE(files);
+  EXPECT_EQ(files.error().kind, ErrorKind::write);
+  EXPECT_NE(files.error().message.find("/proc/self/"), std::string::npos) << files.error().message;
+}
+
 TEST_F(FrameFilesTest, ATrajectoryGrowsByWholeLines) {
   const std::string path = (folder_ / "t.txt").string();
   const auto text = [&path] {
