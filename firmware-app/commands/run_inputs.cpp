@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "drivers/lcm/lcm_url.hpp"
+#include "drivers/lcm/publisher.hpp"
 #include "firmware-app/config/sensor_file.hpp"
 
 namespace pliant {
@@ -56,6 +56,11 @@ RunSettings settings_of(const RunOptions& options, const Config& config, const D
 Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& config, const RunInputs* before) {
   RunInputs inputs;
   inputs.config = config;
+  // Before anything is opened, so that a wrong word costs no file what it holds.
+  const Outcome publishing = config.lcm.url == "none"
+                                 ? check_channel_prefix(config.lcm.prefix)
+                                 : LcmPublisher::check({config.lcm.url, config.lcm.prefix});
+  if (!publishing) return publishing.error();
   SourceOptions source_options;
   source_options.patience = config.sensor.patience_s;
   if (!config.sensor.description.empty()) {
@@ -83,9 +88,6 @@ Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& confi
   inputs.model = same_model ? before->model : std::make_shared<ModelFile>(std::move(*model));
   inputs.settings = settings_of(options, config, *inputs.source->source);
   if (source_options.sensor) inputs.settings.sensor = source_options.sensor->noise;
-  if (config.lcm.url != "none")
-    if (const Result<LcmUrl> url = LcmUrl::parse(config.lcm.url); !url) return url.error();
-  if (const Outcome prefix = check_channel_prefix(config.lcm.prefix); !prefix) return prefix.error();
   return inputs;
 }
 

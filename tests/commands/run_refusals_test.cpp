@@ -82,6 +82,18 @@ TEST_F(RunRefusals, ListeningNeverWritesALog) {
   EXPECT_EQ(read_file(at("run.log")), "what was there");
 }
 
+TEST_F(RunRefusals, AWrongLogCostsNoFileWhatItHolds) {
+  for (const auto& [url, code] : {std::pair{"file://" + at("x.log"), 2},
+                                  {"file://" + at("none/x.log") + "?mode=w", 3},
+                                  {"file://" + folder_.string() + "?mode=w", 3}}) {
+    write_file(at("t.txt"), "what was there");
+    expect_refused(run_pliant({"run", "--source", "simulated:box?frames=3&width=160&height=120", "--lcm-url",
+                               url, "--trajectory", at("t.txt")}),
+                   code, {"LCM"});
+    EXPECT_EQ(read_file(at("t.txt")), "what was there");
+  }
+}
+
 TEST_F(RunRefusals, AFolderThatHoldsPointsIsRefused) {
   std::filesystem::create_directories(at("points"));
   write_file(at("points/000007.ply"), "ply\n");
