@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 #include <png.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -88,8 +89,18 @@ std::uint32_t big_endian32(const std::byte* p) {
   return value;
 }
 
+Error too_large(const std::filesystem::path& file) {
+  return bad(file.string(), "larger than 64 MB; not a depth picture");
+}
+
 /// Reads the whole file into `data`, whose storage is reused.
 Outcome load(const std::filesystem::path& file, std::vector<std::byte>& data) {
+  // Opening a pipe would wait for its writer, for ever.
+  struct stat about {};
+  if (::stat(file.c_str(), &about) != 0) return bad(file.string(), std::strerror(errno));
+  if (!S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode))
+    return bad(file.string(), "is no regular file; not a depth picture");
+  if (static_cast<std::uintmax_t>(about.st_size) > kMaxFileBytes) return too_large(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!in) return bad(file.string(), std::strerror(errno));
   data.resize(std::max(data.capacity(), std::size_t{1} << 16));
@@ -99,7 +110,7 @@ Outcome load(const std::filesystem::path& file, std::vector<std::byte>& data) {
     size += std::fread(data.data() + size, 1, data.size() - size, in.get());
     if (std::ferror(in.get()) != 0) return bad(file.string(), std::strerror(errno));
     if (size < data.size()) break;
-    if (size > kMaxFileBytes) return bad(file.string(), "larger than 64 MB; not a depth picture");
+    if (size > kMaxFileBytes) return too_large(file);
     data.resize(2 * data.size());
   }
   data.resize(size);
@@ -110,6 +121,8 @@ Outcome load(const std::filesystem::path& file, std::vector<std::byte>& data) {
 
 bool is_png(const std::filesystem::path& file) {
   std::array<char, 4> start{};
+  std::error_code ignored;
+  if (std::filesystem::is_fifo(file, ignored)) return file.extension() == ".png";
   std::ifstream stream(file, std::ios::binary);
   stream.read(start.data(), start.size());
   return file.extension() == ".png" || (stream && start == std::array<char, 4>{'\x89', 'P', 'N', 'G'});

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <string>
@@ -150,6 +151,14 @@ TEST_F(PngTest, WhatIsNoPngIsNamed) {
   GreyImage16 image;
   EXPECT_NE(reader.read(folder_ / "none.png", image).error().message.find("No such file"), std::string::npos);
   EXPECT_NE(reader.read(folder_, image).error().message.find("directory"), std::string::npos);
+  // A pipe would be waited for, a file without end be read for ever.
+  ASSERT_EQ(mkfifo((folder_ / "pipe.png").c_str(), 0600), 0);
+  for (const fs::path& path : {folder_ / "pipe.png", fs::path("/dev/zero")})
+    EXPECT_NE(reader.read(path, image).error().message.find("no regular file"), std::string::npos);
+  EXPECT_FALSE(is_png(folder_ / "pipe"));
+  std::ofstream(folder_ / "huge.png") << "x";
+  fs::resize_file(folder_ / "huge.png", std::uintmax_t{1} << 40);
+  EXPECT_NE(reader.read(folder_ / "huge.png", image).error().message.find("64 MB"), std::string::npos);
   std::ofstream(folder_ / "text.png") << "this is no picture at all, just some text";
   EXPECT_NE(reader.read(folder_ / "text.png", image).error().message.find("not a PNG"), std::string::npos);
   std::ofstream(folder_ / "empty.png").flush();
