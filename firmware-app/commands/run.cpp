@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/simd/cpu.hpp"
@@ -125,7 +126,19 @@ Result<RunInputs> reload(const RunOptions& options, const RunInputs& current) {
   if (!config) return config.error();
   if (options.writes_files() && !changed_keys(current.config, *config).empty())
     return Error{ErrorKind::bad_input, "a run that writes files keeps its config"};
-  return open_run_inputs(options, *config, &current);
+  Result<RunInputs> read = open_run_inputs(options, *config, &current);
+  if (read && options.writes_files() && read->model != current.model)
+    return Error{ErrorKind::bad_input,
+                 "a run that writes files keeps its model, and the model file is another"};
+  return read;
+}
+
+/// What a reload brings, for people; empty when it brings nothing.
+std::string news_of(const RunInputs& before, const RunInputs& after) {
+  std::string news = changed_keys(before.config, after.config);
+  if (before.config.model == after.config.model && before.model != after.model)
+    news += news.empty() ? "the model file is another" : ", and the model file is another";
+  return news;
 }
 
 /// A device or a file system that hangs must not hold the program's end up.
@@ -160,9 +173,13 @@ int run(const RunOptions& options) {
   Watcher watcher;
   std::optional<RunInputs> next, before;
   std::optional<RigidTransform> pose;
+  std::set<std::string> logs;  // that this run has written: a reload must not empty them
+  std::int64_t taken = 0;
   for (;;) {
     RunSettings settings = inputs.settings;
     settings.start_pose = pose;
+    settings.add_to_log = !logs.insert(settings.lcm_url).second;
+    if (options.frames >= 0) settings.frame_limit = options.frames - taken;
     const std::int64_t frame_count = frames_to_come(inputs.source->source->frame_count(), options.frames);
     settings.warn = [&](const std::string& message) { watcher.warn(message); };
     settings.progress = [&](const LiveFigures& live) { watcher.look(live, frame_count); };
@@ -174,10 +191,9 @@ int run(const RunOptions& options) {
         watcher.warn("the old config stays: " + read.error().message);
         return false;
       }
-      const std::string changed = changed_keys(inputs.config, read->config);
-      watcher.warn(changed.empty() ? "config read again: nothing has changed"
-                                   : "config read again: " + changed);
-      if (changed.empty() && read->model == inputs.model) return false;
+      const std::string news = news_of(inputs, *read);
+      watcher.warn(news.empty() ? "config read again: nothing has changed" : "config read again: " + news);
+      if (news.empty()) return false;
       next = std::move(*read);
       return true;
     };
@@ -190,13 +206,14 @@ int run(const RunOptions& options) {
       before.reset();
       continue;
     }
+    taken += end->taken;
     if (end->left && end->source_hangs) {
       // It cannot be used again, nor closed; a service manager starts the program anew.
       static_cast<void>(report({ErrorKind::device, "the device does not answer: it cannot be taken over"}));
       std::fflush(nullptr);
       std::_Exit(kExitFailed);
     }
-    if (end->left && next) {
+    if (end->left && next && (options.frames < 0 || taken < options.frames)) {
       const bool same_object = next->model == inputs.model && next->source == inputs.source;
       pose.reset();
       if (same_object && end->figures.last_state == TrackState::tracking) pose = end->figures.last_pose;

@@ -18,8 +18,7 @@ constexpr int kPatienceMs = 100;  // how long a stop may go unseen
 void Capture::run() {
   SourceItem item;
   const Intrinsics& camera = source_.intrinsics();
-  std::int64_t taken = 0;
-  while (!stopped() && (settings_.frame_limit < 0 || taken < settings_.frame_limit)) {
+  while (!stopped() && (settings_.frame_limit < 0 || taken() < settings_.frame_limit)) {
     source_.next(kPatienceMs, item);
     if (item.event != SourceEvent::timeout || source_.live()) beats_.fetch_add(1, std::memory_order_relaxed);
     if (item.event == SourceEvent::end || item.event == SourceEvent::lost) break;
@@ -27,7 +26,7 @@ void Capture::run() {
       if (!item.fault.empty()) note_fault(item.fault);
       continue;
     }
-    ++taken;
+    taken_.fetch_add(1, std::memory_order_relaxed);
     device_.store(DeviceState::streaming, std::memory_order_relaxed);
     const DepthFrame& frame = item.frame;
     if (item.event == SourceEvent::frame && (frame.width != camera.width || frame.height != camera.height)) {

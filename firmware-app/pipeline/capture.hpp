@@ -25,6 +25,8 @@ class Capture {
   void run();
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
+  /// From the source, bad ones included.
+  [[nodiscard]] std::int64_t taken() const noexcept { return taken_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t bad_frames() const noexcept {
     return bad_frames_.load(std::memory_order_relaxed);
   }
@@ -47,7 +49,7 @@ class Capture {
   FrameRing& ring_;
   const Settings settings_;
   std::atomic<bool> stop_{false};
-  std::atomic<std::int64_t> bad_frames_{0};
+  std::atomic<std::int64_t> taken_{0}, bad_frames_{0};
   std::atomic<std::uint64_t> beats_{0};
   std::atomic<DeviceState> device_{DeviceState::opening};
   mutable std::mutex mutex_;

@@ -217,6 +217,7 @@ Result<RunEnd> run_pipeline(DepthSource& source, const ModelView& model, const R
     end.files_failed = end.files_failed || !closed;
     figures.files_left_out = static_cast<std::int64_t>(files->left_out());
   }
+  end.taken = capture.taken();
   end.device_lost = capture.device() == DeviceState::lost;
   end.fault = capture.fault();
   figures.dropped = static_cast<std::int64_t>(ring.dropped());

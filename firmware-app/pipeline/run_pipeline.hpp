@@ -45,6 +45,7 @@ struct RunSettings {
 /// How a run that could start ended.
 struct RunEnd {
   RunFigures figures;
+  std::int64_t taken = 0;     ///< frames taken from the source, bad ones included
   bool stopped = false;       ///< by SIGINT or SIGTERM
   bool left = false;          ///< because RunSettings::leave said so
   bool source_hangs = false;  ///< it did not come back: the caller must end the process without closing it

@@ -8,6 +8,8 @@
 #include <csignal>
 #include <filesystem>
 
+#include "drivers/lcm/lcm_log.hpp"
+#include "drivers/lcm/messages.hpp"
 #include "tests/commands/program.hpp"
 #include "tests/service/fake_manager.hpp"
 
@@ -82,6 +84,57 @@ TEST_F(Service, PingsStopWhenFramesStopAndItStillEndsWithinASecond) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   close(lease);
   std::signal(SIGIO, handler);
+}
+
+TEST_F(Service, AReloadKeepsTheLogAndTheNumberOfFrames) {
+  const auto write = [this](int budget) {
+    write_file(at("c.toml"), fmt::format("source = \"simulated:cushion?frames=100000&width=160&height=120\"\n"
+                                         "[lcm]\nurl = \"file://run.log?mode=w\"\n[track]\nbudget_ms = {}\n",
+                                         budget));
+  };
+  write_file(at("run.log"), "what was there");
+  write(33);
+  start({"--config", at("c.toml"), "--pace", "fast", "--frames", "1500"});
+  ASSERT_TRUE(manager_.hears("  tracking", 20'000));
+  write(50);
+  kill(process_, SIGHUP);
+  Ended ended = wait_for(process_, folder_);
+  process_ = -1;
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("config read again: track.budget_ms"), std::string::npos) << ended.err;
+  Result<LcmLog> log = LcmLog::open(at("run.log"));
+  ASSERT_TRUE(log) << log.error().message;
+  LcmLogEvent event;
+  RegionsMessage message;
+  std::int64_t first = -1, last = -1;
+  while (log->next(event)) {
+    if (event.channel != "PLIANT_REGIONS" || !decode(event.body, message)) continue;
+    if (first < 0) first = message.frame;
+    last = message.frame;
+  }
+  EXPECT_EQ(log->damages(), 0);
+  EXPECT_EQ(first, 0);
+  EXPECT_EQ(last, 1499);
+}
+
+TEST_F(Service, AnotherModelUnderTheSameNameIsTold) {
+  const std::string model = box_model();
+  write_config("");
+  start({"--config", at("c.toml"), "--model", model, "--pace", "realtime"});
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_EQ(run_pliant({"model", "build", "simulated:cushion", "-o", model}).code, 0);
+  kill(process_, SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
+  EXPECT_TRUE(manager_.hears("  tracking", 30'000));
+  kill(process_, SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  Ended ended;
+  EXPECT_LT(end(ended), kEndsWithin);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.err,
+            "pliant: config read again: the model file is another\n"
+            "pliant: config read again: nothing has changed\n");
 }
 
 TEST_F(Service, AValidConfigIsTakenUpWithoutLosingTheObject) {
