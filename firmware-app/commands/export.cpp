@@ -6,6 +6,8 @@
 #include "drivers/model_files/model_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/export/exporters.hpp"
 
 namespace pliant {
@@ -28,6 +30,15 @@ ReceivedModel received(const ModelFile& file) {
 int export_log(const ExportOptions& options) {
   if (options.tum.empty() && options.ply.empty() && options.csv.empty() && options.mcap.empty())
     return report({ErrorKind::bad_input, "nothing to write: give --tum, --ply, --csv or --mcap"});
+  const Outcome apart = NamedFiles()
+                            .reads("LOG", options.log)
+                            .reads("--model", options.model)
+                            .writes("--tum", options.tum)
+                            .writes("--ply", options.ply)
+                            .writes_tables("--csv", options.csv)
+                            .writes("--mcap", options.mcap)
+                            .apart();
+  if (!apart) return report(apart.error());
   // Read before anything is written, so that a wrong name leaves no empty files.
   Result<std::vector<ReceivedModel>> models = models_in_log(options.log, options.prefix);
   if (!models) return report(models.error());
@@ -81,17 +92,23 @@ void add_export(CLI::App& program, Work& work) {
   auto options = std::make_shared<ExportOptions>();
   app->add_option("LOG", options->log, "Log file, as 'lcm-logger' or --lcm-url 'file://LOG?mode=w' writes it")
       ->required();
-  app->add_option("--tum", options->tum, "The base region's path, TUM format (evo)")->type_name("FILE");
+  app->add_option("--tum", options->tum, "The base region's path, TUM format (evo)")
+      ->check(names_a_file())
+      ->type_name("FILE");
   app->add_option("--ply", options->ply, "A points file per tracked frame (MeshLab, CloudCompare)")
+      ->check(names_a_folder())
       ->type_name("DIR");
   app->add_option("--csv", options->csv, "Tables of frames, regions, deformed points and statuses")
+      ->check(names_a_folder())
       ->type_name("DIR");
   app->add_option("--mcap", options->mcap, "Transforms, points, depth and statuses in one file (Foxglove)")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--prefix", options->prefix, "First word of the channels' names")
       ->capture_default_str()
       ->type_name("PREFIX");
   app->add_option("--model", options->model, "Model file, where the log does not hold the model")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->callback([options, &work] { work = [options] { return export_log(*options); }; });
 }

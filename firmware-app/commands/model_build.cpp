@@ -7,6 +7,8 @@
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 
 namespace pliant {
 
@@ -18,6 +20,10 @@ struct BuildOptions {
 };
 
 int build(const BuildOptions& options) {
+  if (const Outcome apart =
+          NamedFiles().reads("INPUT", options.input).writes("--output", options.output).apart();
+      !apart)
+    return report(apart.error());
   LiveLine line;
   line.show("reading " + options.input);
   const Result<Geometry> geometry = load_geometry(options.input);
@@ -50,20 +56,23 @@ void add_model_build(CLI::App& model, Work& work) {
   app->add_option("INPUT", options->input,
                   "Mesh (PLY, OBJ, STL, OFF) or cloud (PLY, PCD), or simulated:cushion|figure|box")
       ->required();
-  app->add_option("-o,--output", options->output, "Model file to write")->required()->type_name("OUT.model");
+  app->add_option("-o,--output", options->output, "Model file to write")
+      ->required()
+      ->check(names_a_file())
+      ->type_name("OUT.model");
   app->add_option("--units", options->units, "Unit of the input's coordinates")
       ->check(CLI::IsMember({"m", "mm"}).description(""))
       ->type_name("m|mm")
       ->capture_default_str();
   app->add_option("--spacing", options->spacing,
                   "Distance between the model's points, metres; left out: derived from the surface")
-      ->check(CLI::Range(1e-5, 1.0).description(""))
+      ->check(number_within(1e-5, 1))
       ->type_name("M");
   app->add_option(
          "--material", options->material,
          "How easily the object stretches, 0 stiff like leather to 1 soft like fleece; 'track.material' "
          "in a config overrides it")
-      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->check(number_within(0, 1))
       ->type_name("0..1")
       ->capture_default_str();
   app->callback([options, &work] { work = [options] { return build(*options); }; });

@@ -17,6 +17,8 @@
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/commands/place_views.hpp"
 #include "firmware-app/pipeline/memory_block.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
@@ -172,11 +174,17 @@ std::string refused_words(const CaptureOptions& options) {
   return "";
 }
 
-/// A place that cannot be written to shows before the object was turned for half a minute, not after.
-Outcome check_output(const std::string& file, const char* option) {
-  if (file.empty())
-    return Error{ErrorKind::bad_input, fmt::format("{} names no file; name one to write to", option)};
-  return check_output_place(file, kLeastRoom);
+Outcome files_apart(const CaptureOptions& options) {
+  NamedFiles files;
+  files.reads_source("--source", options.source)
+      .reads("--camera", options.camera)
+      .reads("--sensor", options.sensor)
+      .reads("--poses", options.poses)
+      .writes("--output", options.output)
+      .writes("--ply", options.ply)
+      .uses_log("--lcm-url", options.lcm_url);
+  for (const std::string& view : options.views) files.reads("VIEWS", view);
+  return files.apart();
 }
 
 int capture(const CaptureOptions& given) {
@@ -184,11 +192,13 @@ int capture(const CaptureOptions& given) {
   CaptureOptions options = given;
   if (const std::string fault = refused_words(options); !fault.empty())
     return report({ErrorKind::bad_input, fault});
-  if (const Outcome possible = check_output(options.output, "--output"); !possible)
-    return report(possible.error());
-  if (!options.ply.empty())
-    if (const Outcome possible = check_output(options.ply, "--ply"); !possible)
+  if (const Outcome apart = files_apart(options); !apart) return report(apart.error());
+  // A place that cannot be written to shows before the object was turned for half a minute, not after.
+  for (const std::string& file : {options.output, options.ply}) {
+    if (file.empty()) continue;
+    if (const Outcome possible = check_output_place(file, kLeastRoom); !possible)
       return report(possible.error());
+  }
   options.capture.separate_views = !options.views.empty();
   if (options.at.size() == 2) {
     options.capture.at_u = options.at[0];
@@ -249,41 +259,50 @@ void add_model_capture(CLI::App& model, Work& work) {
                   "Instead of a source: files of single views, depth pictures (16-bit PNG) or clouds (PLY, "
                   "PCD) in the frame of their camera; where they lie to each other is found, or given by "
                   "--poses");
-  app->add_option("--camera", options->camera, "camera.toml of the depth pictures")->type_name("FILE");
+  app->add_option("--camera", options->camera, "camera.toml of the depth pictures")
+      ->check(names_a_file())
+      ->type_name("FILE");
   app->add_option("--units", options->units, "Unit of the clouds' coordinates")
       ->check(CLI::IsMember({"m", "mm"}).description(""))
       ->type_name("m|mm")
       ->capture_default_str();
-  app->add_option("-o,--output", options->output, "Model file to write")->required()->type_name("OUT.model");
+  app->add_option("-o,--output", options->output, "Model file to write")
+      ->required()
+      ->check(names_a_file())
+      ->type_name("OUT.model");
   app->add_option("--size", options->capture.size, "Edge of the cube that holds the object, metres")
-      ->check(CLI::Range(0.05, 1.0).description(""))
+      ->check(number_within(0.05, 1))
       ->type_name("M")
       ->capture_default_str();
   app->add_option("--voxel", options->capture.voxel,
                   "Edge of a voxel, metres; left out: what the sensor's noise allows to tell apart")
-      ->check(CLI::Range(0.0005, 0.02).description(""))
+      ->check(number_within(0.0005, 0.02))
       ->type_name("M");
   app->add_option("--clearance", options->capture.clearance,
                   "Take nothing that is less high above the table, metres: for a turntable")
-      ->check(CLI::Range(0.0, 0.2).description(""))
+      ->check(number_within(0, 0.2))
       ->type_name("M");
   app->add_option("--material", options->material, "How easily the object stretches, 0 stiff to 1 soft")
-      ->check(CLI::Range(0.0, 1.0).description(""))
+      ->check(number_within(0, 1))
       ->type_name("0..1")
       ->capture_default_str();
   app->add_option("--at", options->at,
                   "A pixel of the object in the first picture; left out: what stands in the middle")
       ->expected(2)
+      ->check(whole_from_zero())
       ->type_name("U V");
   app->add_option("--ply", options->ply,
                   "Also write the captured surface as a mesh, to be edited and built again")
+      ->check(names_a_file())
       ->type_name("P.ply");
   app->add_option("--sensor", options->sensor,
                   "Sensor description (TOML): mode, camera and noise of a device")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--poses", options->poses,
                   "Known poses of the object, camera <- object, as lines '<seconds> tx ty tz qx qy qz qw' "
                   "with the frames' stamps (of files: their position, from 0); left out: found by alignment")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--lcm-url", options->lcm_url,
                   "LCM network on which 'pliant view' sees the model grow, 'none' to publish nothing")

@@ -5,6 +5,8 @@
 #include "drivers/model_files/model_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 
 namespace pliant {
 
@@ -15,6 +17,10 @@ struct ExportOptions {
 };
 
 int export_model(const ExportOptions& options) {
+  if (const Outcome apart =
+          NamedFiles().reads("FILE", options.input).writes("--output", options.output).apart();
+      !apart)
+    return report(apart.error());
   const Result<ModelFile> file = ModelFile::open(options.input);
   if (!file) return report(file.error());
   const ModelView& view = file->view();
@@ -36,7 +42,10 @@ void add_model_export(CLI::App& model, Work& work) {
   CLI::App* app = model.add_subcommand("export", "Write a model's points and normals as a PLY file");
   auto options = std::make_shared<ExportOptions>();
   app->add_option("FILE", options->input, "Model file")->required();
-  app->add_option("-o,--output", options->output, "PLY file to write")->required()->type_name("P.ply");
+  app->add_option("-o,--output", options->output, "PLY file to write")
+      ->required()
+      ->check(names_a_file())
+      ->type_name("P.ply");
   app->callback([options, &work] { work = [options] { return export_model(*options); }; });
 }
 

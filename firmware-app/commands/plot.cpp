@@ -9,6 +9,8 @@
 #include "drivers/recording/text_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/pictures/stats_plot.hpp"
 #include "firmware-app/pictures/svg.hpp"
 #include "firmware-app/pictures/trajectory_errors.hpp"
@@ -24,6 +26,16 @@ struct PlotOptions {
 int plot(const PlotOptions& options) {
   if (options.trajectory.empty() != options.truth.empty())
     return report({ErrorKind::bad_input, "errors need both --trajectory and --truth"});
+  const std::string output = options.output.empty()
+                                 ? std::filesystem::path(options.stats).replace_extension(".svg").string()
+                                 : options.output;
+  const Outcome apart = NamedFiles()
+                            .reads("STATS", options.stats)
+                            .reads("--trajectory", options.trajectory)
+                            .reads("--truth", options.truth)
+                            .writes(options.output.empty() ? "the picture beside STATS" : "--output", output)
+                            .apart();
+  if (!apart) return report(apart.error());
   constexpr std::size_t kMostBytes = 16U << 20;
   const Result<std::string> text = read_text_file(options.stats, kMostBytes);
   if (!text) return report({ErrorKind::bad_input, "cannot read the figures " + text.error().message});
@@ -44,9 +56,6 @@ int plot(const PlotOptions& options) {
                   0, svg);
   if (!errors.empty()) draw_error_plot(errors, height, svg);
   const std::string picture = svg.finished();
-  const std::string output = options.output.empty()
-                                 ? std::filesystem::path(options.stats).replace_extension(".svg").string()
-                                 : options.output;
   if (const Outcome written = write_whole_file(output.c_str(), std::as_bytes(std::span(picture)), false);
       !written)
     return report(written.error());
@@ -61,10 +70,13 @@ void add_plot(CLI::App& program, Work& work) {
   auto options = std::make_shared<PlotOptions>();
   app->add_option("STATS", options->stats, "File written by 'pliant run --stats'")->required();
   app->add_option("-o,--output", options->output, "SVG file to write; left out: beside STATS")
+      ->check(names_a_file())
       ->type_name("P.svg");
   app->add_option("--trajectory", options->trajectory, "Path written by 'pliant run --trajectory'")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--truth", options->truth, "The true path, such as a recording's groundtruth.txt")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->callback([options, &work] { work = [options] { return plot(*options); }; });
 }

@@ -8,6 +8,8 @@
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/pipeline/recording_thread.hpp"
 #include "firmware-app/pipeline/stop_signal.hpp"
 
@@ -72,6 +74,12 @@ class Recorder {
 
 int record(const RecordOptions& options) {
   const StopSignal stop;
+  const Outcome apart = NamedFiles()
+                            .reads_source("--source", options.source)
+                            .reads("--sensor", options.sensor)
+                            .writes("--output", options.output)
+                            .apart();
+  if (!apart) return report(apart.error());
   SourceOptions source_options;
   source_options.keeps_frames = true;
   if (!options.sensor.empty()) {
@@ -133,9 +141,11 @@ void add_record(CLI::App& program, Work& work) {
   app->add_option("--source", options->source, kSourceHelp)->required()->type_name("URI");
   app->add_option("-o,--output", options->output, "Folder of the new recording")
       ->required()
+      ->check(names_a_folder())
       ->type_name("DIR");
   app->add_option("--sensor", options->sensor,
                   "Sensor description (TOML): mode, camera and noise of a device")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--frames", options->frames, "Take this many frames from the source")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 62).description(""))

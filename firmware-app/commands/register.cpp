@@ -14,6 +14,8 @@
 #include "drivers/recording/camera_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/commands/registration_report.hpp"
 #include "firmware-app/commands/scene.hpp"
 #include "firmware-app/pipeline/memory_block.hpp"
@@ -29,6 +31,9 @@ struct RegisterOptions {
   std::vector<double> viewpoint;
   bool no_warp = false, no_constraints = false;
 };
+
+/// Of a viewpoint, metres: that of no scene lies farther, and its square is a number yet.
+constexpr double kFarthest = 1e7;
 
 /// Threads that share work; none of them lasts longer than a task.
 void run_on_threads(void* /*context*/, std::size_t pieces, WorkSharer::Piece work, void* task) {
@@ -81,7 +86,20 @@ Outcome write_instances(const RegisterOptions& options, const ModelView& model, 
   return success();
 }
 
+/// The result's names are all claimed: those of further instances too, which may be removed.
+Outcome files_apart(const RegisterOptions& options) {
+  NamedFiles files;
+  files.reads("--model", options.model)
+      .reads("--scene", options.scene)
+      .reads("--camera", options.camera)
+      .writes("--report", options.report);
+  for (std::size_t i = 0; i < CloudRegistration::kMostInstances; ++i)
+    files.writes("--output", instance_path(options.output, i));
+  return files.apart();
+}
+
 int register_scene(const RegisterOptions& options) {
+  if (const Outcome apart = files_apart(options); !apart) return report(apart.error());
   const Result<ModelFile> model = ModelFile::open(options.model);
   if (!model) return report(model.error());
   const Result<Scene> scene = read_scene(options.scene, options.camera);
@@ -133,15 +151,19 @@ void add_register(CLI::App& program, Work& work) {
   app->add_option("--scene", options->scene, "Cloud (PLY, PCD) or 16-bit depth picture (PNG)")
       ->required()
       ->type_name("FILE");
-  app->add_option("--camera", options->camera, "camera.toml of a depth picture")->type_name("FILE");
+  app->add_option("--camera", options->camera, "camera.toml of a depth picture")
+      ->check(names_a_file())
+      ->type_name("FILE");
   app->add_option("-o,--output", options->output,
                   "Where every model point is, PLY; further instances go to OUT.1.ply, OUT.2.ply, ...")
       ->required()
+      ->check(names_a_file())
       ->type_name("OUT.ply");
   app->add_option(
          "--report", options->report,
          "Instances, regions, transforms and times, JSON; work that belongs to the model and could be "
          "done beforehand is kept apart")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--keypoints", options->keypoints, "Keypoints of model and scene")
       ->delimiter(',')
@@ -159,6 +181,7 @@ void add_register(CLI::App& program, Work& work) {
          "Where the sensor stood, scene frame, metres; left out: normals are made consistent by themselves")
       ->delimiter(',')
       ->expected(3)
+      ->check(number_within(-kFarthest, kFarthest))
       ->type_name("x,y,z");
   app->add_option("--threads", options->threads,
                   "Threads that share descriptors and matches of a cloud, 1 to 16; the result is the same")

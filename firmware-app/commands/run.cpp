@@ -14,6 +14,7 @@
 #include "drivers/geometry_files/atomic_file.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/commands/run_inputs.hpp"
 #include "firmware-app/measure/clock.hpp"
 #include "firmware-app/outputs/run_report.hpp"
@@ -237,19 +238,26 @@ void add_run(CLI::App& program, Work& work) {
   CLI::App* app = program.add_subcommand("run", "Track a model in the frames of a source");
   auto options = std::make_shared<RunOptions>();
   app->add_option("--config", options->config, "Config file (TOML); the options below win over it")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--model", options->model, "Model file; a simulated source brings its own")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--source", options->source, kSourceHelp)->type_name("URI");
   app->add_option("--sensor", options->sensor,
                   "Sensor description (TOML): mode, camera and noise of a device")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_flag("--publish-depth", options->publish_depth, "Publish the depth frames too");
   app->add_option("--trajectory", options->trajectory, "Write the base region's path, TUM format")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--points", options->points, "Write where every point is, a PLY file per tracked frame")
+      ->check(names_a_folder())
       ->type_name("DIR");
-  app->add_option("--stats", options->stats, "Write the run's figures, JSON")->type_name("FILE");
+  app->add_option("--stats", options->stats, "Write the run's figures, JSON")
+      ->check(names_a_file())
+      ->type_name("FILE");
   app->add_option("--lcm-url", options->lcm_url, "LCM network to publish on, 'none' to publish nothing")
       ->type_name("URL");
   app->add_option("--frames", options->frames, "Take this many frames from the source")

@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "drivers/lcm/lcm_url.hpp"
 #include "drivers/lcm/publisher.hpp"
+#include "firmware-app/commands/named_files.hpp"
 #include "firmware-app/config/sensor_file.hpp"
 
 namespace pliant {
@@ -53,7 +55,26 @@ RunSettings settings_of(const RunOptions& options, const Config& config, const D
 
 }  // namespace
 
+namespace {
+
+Outcome files_apart(const RunOptions& options, const Config& config) {
+  return NamedFiles()
+      .reads("--config", options.config)
+      .reads(option_or_key(options.model.has_value(), "--model", "model"), config.model)
+      .reads(option_or_key(options.sensor.has_value(), "--sensor", "sensor.description"),
+             config.sensor.description)
+      .reads_source(option_or_key(options.source.has_value(), "--source", "source"), config.source)
+      .writes("--trajectory", options.trajectory)
+      .writes("--points", options.points)
+      .writes("--stats", options.stats)
+      .uses_log(option_or_key(options.lcm_url.has_value(), "--lcm-url", "lcm.url"), config.lcm.url)
+      .apart();
+}
+
+}  // namespace
+
 Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& config, const RunInputs* before) {
+  if (Outcome apart = files_apart(options, config); !apart) return apart.error();
   RunInputs inputs;
   inputs.config = config;
   // Before anything is opened, so that a wrong word costs no file what it holds.

@@ -8,6 +8,8 @@
 #include "drivers/lcm/subscriber.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/named_files.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/export/log_exporter.hpp"
 #include "firmware-app/measure/clock.hpp"
 #include "firmware-app/outputs/words.hpp"
@@ -174,6 +176,12 @@ Outcome look_at_bus(const SnapshotOptions& options, Seen& seen) {
 }
 
 int snapshot(const SnapshotOptions& options) {
+  const Outcome apart = NamedFiles()
+                            .reads("--log", options.log)
+                            .uses_log("--lcm-url", options.url)
+                            .writes("--output", options.output)
+                            .apart();
+  if (!apart) return report(apart.error());
   Seen seen;
   const Outcome looked = options.log.empty() ? look_at_bus(options, seen) : look_in_log(options, seen);
   return looked ? draw(seen, options.output) : report(looked.error());
@@ -184,17 +192,21 @@ int snapshot(const SnapshotOptions& options) {
 void add_snapshot(CLI::App& program, Work& work) {
   CLI::App* app = program.add_subcommand("snapshot", "Draw what a tracker publishes, without a display");
   auto options = std::make_shared<SnapshotOptions>();
-  app->add_option("-o,--output", options->output, "PNG file to write")->required()->type_name("P.png");
+  app->add_option("-o,--output", options->output, "PNG file to write")
+      ->required()
+      ->check(names_a_file())
+      ->type_name("P.png");
   app->add_option("--lcm-url", options->url, "LCM network to listen on")->type_name("URL");
   app->add_option("--prefix", options->prefix, "First word of the channels' names")
       ->capture_default_str()
       ->type_name("PREFIX");
   app->add_option("--wait", options->wait, "Seconds to wait for a tracked frame")
-      ->check(CLI::Range(0.1, 3600.0).description(""))
+      ->check(number_within(0.1, 3600))
       ->capture_default_str()
       ->type_name("S");
-  CLI::Option* log =
-      app->add_option("--log", options->log, "A log of lcm-logger instead of the network")->type_name("FILE");
+  CLI::Option* log = app->add_option("--log", options->log, "A log of lcm-logger instead of the network")
+                         ->check(names_a_file())
+                         ->type_name("FILE");
   app->add_option("--frame", options->frame, "The log's frame; left out: the last one tracked")
       ->check(CLI::NonNegativeNumber.description(""))
       ->needs(log)

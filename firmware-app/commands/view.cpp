@@ -13,6 +13,7 @@
 
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
+#include "firmware-app/commands/option_checks.hpp"
 #include "firmware-app/config/config.hpp"
 
 namespace pliant {
@@ -87,6 +88,7 @@ void add_view(CLI::App& program, Work& work) {
   app->add_option("--prefix", options->prefix, "First word of the channels' names [PLIANT]")
       ->type_name("PREFIX");
   app->add_option("--config", options->config, "Config file (TOML); the options above win over it")
+      ->check(names_a_file())
       ->type_name("FILE");
   app->callback([options, &work] { work = [options] { return view(*options); }; });
 }

@@ -145,7 +145,7 @@ TEST_F(CaptureCommand, AFolderThatIsMissingIsToldBeforeAnythingIsTurned) {
 }
 
 TEST_F(CaptureCommand, AnOutputThatIsNoFileIsToldBeforeAnythingIsTurned) {
-  expect_refused(run_pliant(words(kTurned, "")), 2, {"--output names no file"});
+  expect_refused(run_pliant(words(kTurned, "")), 2, {"--output: names no file"});
   const Ended folder = run_pliant(words(kTurned, folder_));
   expect_refused(folder, 3, {"name a file, not a folder"});
   EXPECT_EQ(folder.out, "");
