@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -70,6 +71,28 @@ std::string instance_path(const std::string& output, std::size_t instance) {
   return path.replace_extension(fmt::format(".{}{}", instance, extension)).string();
 }
 
+/// Whether an earlier registration wrote it: what else has such a name is not ours to remove.
+bool is_instance(const std::string& path) {
+  std::error_code fault;
+  if (!std::filesystem::is_regular_file(path, fault)) return false;
+  std::array<char, 256> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size() - 1);
+  const std::string_view text(head.data());
+  return text.starts_with("ply\n") && text.find("property float rest_x\n") != std::string_view::npos;
+}
+
+/// Instances of an earlier run, which would pass for ones of this.
+Outcome remove_older(const std::string& output, std::size_t first) {
+  for (std::size_t i = first; i < CloudRegistration::kMostInstances; ++i) {
+    const std::string path = instance_path(output, i);
+    std::error_code fault;
+    if (is_instance(path) && !std::filesystem::remove(path, fault) && fault)
+      return Error{ErrorKind::write,
+                   fmt::format("{}: is of an earlier run and cannot be removed: {}", path, fault.message())};
+  }
+  return success();
+}
+
 Outcome write_instances(const RegisterOptions& options, const ModelView& model, const Scene& scene,
                         const RegistrationResult& result) {
   PointsPlyWriter writer(model.positions());
@@ -83,7 +106,7 @@ Outcome write_instances(const RegisterOptions& options, const ModelView& model, 
         !written)
       return written;
   }
-  return success();
+  return remove_older(options.output, result.instances.size());
 }
 
 /// The result's names are all claimed: those of further instances too, which may be removed.
@@ -155,7 +178,8 @@ void add_register(CLI::App& program, Work& work) {
       ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("-o,--output", options->output,
-                  "Where every model point is, PLY; further instances go to OUT.1.ply, OUT.2.ply, ...")
+                  "Where every model point is, PLY; further instances go to OUT.1.ply, OUT.2.ply, ...; "
+                  "those that an earlier run left there are removed")
       ->required()
       ->check(names_a_file())
       ->type_name("OUT.ply");

@@ -77,6 +77,24 @@ TEST_F(RegisterCommand, AnyNumberOfThreadsGivesTheSameBytes) {
   EXPECT_EQ(read_file(at("result1.ply")), read_file(at("result16.ply")));
 }
 
+TEST_F(RegisterCommand, InstancesOfAnEarlierRunDoNotStayBesideTheNewOnes) {
+  prepare();
+  ASSERT_EQ(run_pliant({"model", "export", at("cushion.model"), "-o", at("scene.ply")}).code, 0);
+  const std::vector<std::string> words = {"register",    "--model",         at("cushion.model"),
+                                          "--scene",     at("scene.ply"),   "-o",
+                                          at("res.ply"), "--max-instances", "3"};
+  ASSERT_EQ(run_pliant(words).code, 0);
+  ASSERT_FALSE(std::filesystem::exists(at("res.1.ply")));
+  std::filesystem::copy_file(at("res.ply"), at("res.1.ply"));
+  std::filesystem::copy_file(at("res.ply"), at("res.5.ply"));
+  write_file(at("res.2.ply"), "mine");
+  ASSERT_EQ(run_pliant(words).code, 0);
+  EXPECT_TRUE(std::filesystem::exists(at("res.ply")));
+  EXPECT_FALSE(std::filesystem::exists(at("res.1.ply")));
+  EXPECT_FALSE(std::filesystem::exists(at("res.5.ply")));
+  EXPECT_EQ(read_file(at("res.2.ply")), "mine");
+}
+
 TEST_F(RegisterCommand, WhatIsNotThereIsNotFound) {
   prepare();
   write_file(at("result.ply"), "mine");
