@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "core/camera/sensor.hpp"
+#include "core/camera/surface.hpp"
 #include "core/detect/shot.hpp"
 #include "drivers/model_files/characterisability.hpp"
 #include "drivers/model_files/cloud_normals.hpp"
@@ -203,6 +204,15 @@ bool encloses(const OrientedCloud& cloud, double spacing) {
   return outside_share(cloud, spacing) > kNearlyAll;
 }
 
+/// A model's places are kept in whole units, up to half a unit's diagonal away from where they were. Of an
+/// object of a smaller radius they would not lie about the object any more, and ModelView::open refuses it.
+const double kLeastRadius = std::sqrt(3.0) / 2 / kUnitsPerMetre;
+
+const char* unit_advice(double metres_per_unit) {
+  return metres_per_unit < 1 ? "its coordinates look like metres: build it without --units mm"
+                             : "check its unit (--units m or --units mm)";
+}
+
 void warn_about_size(const BuiltModel& built, double metres_per_unit, std::vector<std::string>& warnings) {
   const double largest = std::max({built.extent[0], built.extent[1], built.extent[2]});
   if (largest > 5)
@@ -213,10 +223,8 @@ void warn_about_size(const BuiltModel& built, double metres_per_unit, std::vecto
     warnings.push_back(fmt::format("the object is {:.2f} m across; only up to {:.0f} m can be tracked",
                                    largest, 2 * limits::kMaxModelHalfExtent));
   if (largest < 0.01)
-    warnings.push_back(fmt::format("the object is {:.4g} mm across; {}", 1000 * largest,
-                                   metres_per_unit < 1
-                                       ? "its coordinates look like metres: build it without --units mm"
-                                       : "check its unit (--units m or --units mm)"));
+    warnings.push_back(
+        fmt::format("the object is {:.4g} mm across; {}", 1000 * largest, unit_advice(metres_per_unit)));
 }
 
 }  // namespace
@@ -257,6 +265,10 @@ Result<BuiltModel> build_model(const Geometry& geometry, const ModelBuildSetting
   measure(positions, header);
   if (!(header.spacing > 0 && header.radius > 0))
     return refuse("its points coincide as far as numbers tell; check the file and --units");
+  if (header.radius < kLeastRadius)
+    return refuse(fmt::format("is {:.2g} mm across, and a model can be no smaller than {:.2g} mm; {}",
+                              2000 * header.radius, 2000 * kLeastRadius,
+                              unit_advice(settings.metres_per_unit)));
   header.material = settings.material;
   header.support_radius = support_radius_for(header.spacing, header.radius);
 

@@ -53,11 +53,12 @@ int write_captured_model(const CapturedModelOptions& options, const ObjectCaptur
   const Result<BuiltModel> built = build_model(mesh, settings);
   if (!built) return report({built.error().kind, "the captured surface " + built.error().message});
   for (const std::string& warning : built->warnings) print_warning(warning);
-  const int model_code = keep_model(options.output, *built);
-  const int code = model_code != kExitDone ? model_code : surface_code;
+  // Before a model that is there gives way to it.
   ModelView view;
   if (const ModelFault fault = ModelView::open(built->image, view); fault != ModelFault::none)
     return report({ErrorKind::write, fmt::format("internal error: the new model {}", describe(fault))});
+  const int model_code = keep_model(options.output, *built);
+  const int code = model_code != kExitDone ? model_code : surface_code;
   const CaptureFigures& figures = capture.figures();
   std::string text = fmt::format("fused: {} of {} pictures, {} kept views\n", figures.fused, figures.frames,
                                  capture.keyframes().all().size());

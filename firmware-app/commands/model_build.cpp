@@ -39,12 +39,12 @@ int build(const BuildOptions& options) {
   if (!built)
     return report({built.error().kind, fmt::format("{}: {}", options.input, built.error().message)});
   for (const std::string& warning : built->warnings) print_warning(options.input + ": " + warning);
-  if (const Outcome written = write_model(options.output, built->image); !written)
-    return report(written.error());
-
+  // Before a model that is there gives way to it.
   ModelView view;
   if (const ModelFault fault = ModelView::open(built->image, view); fault != ModelFault::none)
     return report({ErrorKind::write, fmt::format("internal error: the new model {}", describe(fault))});
+  if (const Outcome written = write_model(options.output, built->image); !written)
+    return report(written.error());
   return print(describe_model(view)) ? kExitDone : kExitFailed;
 }
 

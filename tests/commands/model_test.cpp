@@ -69,6 +69,17 @@ TEST_F(ModelCommand, WrongUnitsAreWarnedOf) {
   EXPECT_EQ(right.err, "");
 }
 
+TEST_F(ModelCommand, AWrongUnitDoesNotCostTheModelThatIsThere) {
+  // 29 mm in metres, read as millimetres.
+  write_file(at("small.obj"),
+             "v 0 0 0\nv 0.029 0 0\nv 0.029 0.02 0\nv 0 0 0.015\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const std::string model = box_model(), before = read_file(model);
+  expect_refused(run_pliant({"model", "build", at("small.obj"), "--units", "mm", "-o", model}), 2,
+                 {"small.obj", "mm across", "without --units mm"});
+  EXPECT_EQ(read_file(model), before);
+  EXPECT_EQ(run_pliant({"model", "build", at("small.obj"), "-o", model}).code, 0);
+}
+
 TEST_F(ModelCommand, BadInputsAreRefused) {
   expect_refused(run_pliant({"model", "build", at("none.ply"), "-o", at("m")}), 2, {"none.ply"});
   expect_refused(run_pliant({"model", "build", folder_.string(), "-o", at("m")}), 2, {});

@@ -142,6 +142,22 @@ TEST(ModelBuilder, RefusesWhatNoModelCanBeMadeOf) {
   EXPECT_TRUE(mentions(error(far), "from the origin"));
 }
 
+TEST(ModelBuilder, TheLeastObjectIsOneThatTheFormatHolds) {
+  // Places in whole sixteenths of a millimetre lie up to 0.0541 mm off.
+  for (const double radius : {5.5e-5, 6e-5, 1e-4}) {
+    const Result<BuiltModel> built = build_model(shapes::sphere(radius, 50), {});
+    ASSERT_TRUE(built) << radius << built.error().message;
+    ModelView view;
+    EXPECT_EQ(ModelView::open(built->image, view), ModelFault::none) << radius;
+  }
+  for (const double radius : {5.3e-5, 1e-5, 1e-6}) {
+    const Result<BuiltModel> built = build_model(shapes::sphere(radius, 50), {});
+    ASSERT_FALSE(built) << radius;
+    EXPECT_EQ(built.error().kind, ErrorKind::bad_input);
+    EXPECT_NE(built.error().message.find("--units"), std::string::npos) << built.error().message;
+  }
+}
+
 TEST(ModelBuilder, TheHeaderFitsTheContents) {
   const Made made = make(shapes::cushion_with_knob());
   const ModelHeader& h = made.view().header();
