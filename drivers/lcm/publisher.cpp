@@ -7,12 +7,11 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 #include <ctime>
-#include <system_error>
 #include <utility>
 
+#include "drivers/lcm/lcm_log_writer.hpp"
 #include "drivers/lcm/multicast_probe.hpp"
 
 namespace pliant {
@@ -23,23 +22,21 @@ constexpr long kDepthPauseNs = 400'000;  // eleven parts of a VGA picture take 5
 constexpr std::chrono::seconds kModelEvery{1};
 }  // namespace
 
-Outcome LcmPublisher::check(const LcmSettings& settings) {
-  const auto url = LcmUrl::parse(settings.url);
-  if (!url) return url.error();
-  auto prefix = check_channel_prefix(settings.prefix);
-  if (!prefix) return prefix;
-  if (!url->writes) {
-    return Error{ErrorKind::bad_input, "LCM URL '" + url->spelled + "': add ?mode=w to write a log"};
-  }
-  return url->writes_log() ? LcmLogWriter::check(url->path) : success();
+Outcome LcmPublisher::check_url(const std::string& url) {
+  const auto parsed = LcmUrl::parse(url);
+  if (!parsed) return parsed.error();
+  if (!parsed->writes)
+    return Error{ErrorKind::bad_input, "LCM URL '" + parsed->spelled + "': add ?mode=w to write a log"};
+  return parsed->writes_log() ? LcmLogWriter::check(parsed->path) : success();
 }
 
 Result<std::unique_ptr<LcmPublisher>> LcmPublisher::create(const LcmSettings& settings,
                                                            std::size_t model_points,
                                                            const SendObserver& observer) {
+  if (const auto usable = check_url(settings.url); !usable) return usable.error();
+  if (const auto prefix = check_channel_prefix(settings.prefix); !prefix) return prefix.error();
   auto url = LcmUrl::parse(settings.url);
   if (!url) return url.error();
-  if (const auto checked = check(settings); !checked) return checked.error();
   url->append = url->append || settings.add_to_log;
   std::string warning;
   std::shared_ptr<LcmBus> bus;

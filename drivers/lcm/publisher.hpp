@@ -53,15 +53,15 @@ class LcmPublisher {
   /// Frames that can wait to be sent: 0.2 s at 30 Hz.
   static constexpr std::size_t kFrameSlots = 6;
 
-  /// What create() would refuse, told without anything being opened: the URL, the prefix, a log file that
-  /// cannot be written.
-  [[nodiscard]] static Outcome check(const LcmSettings& settings);
   /// For models of up to `model_points` points. An error where the URL or the prefix is bad or a log file
   /// cannot be written. A network that is not there is none: warning() tells it in one line with the mend,
   /// the messages are thrown away, and the thread tries again every two seconds.
   [[nodiscard]] static Result<std::unique_ptr<LcmPublisher>> create(const LcmSettings& settings,
                                                                     std::size_t model_points,
                                                                     const SendObserver& observer = {});
+  /// Whether create() could use `url`, as far as that shows without opening it: what it refuses is refused in
+  /// the same words, and a network that is not there is no fault.
+  [[nodiscard]] static Outcome check_url(const std::string& url);
   /// On a connection that is shared with others; needed for memq://.
   [[nodiscard]] static Result<std::unique_ptr<LcmPublisher>> create(std::shared_ptr<LcmBus> bus,
                                                                     const LcmSettings& settings,

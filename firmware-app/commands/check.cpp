@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "drivers/lcm/lcm_url.hpp"
 #include "drivers/model_files/describe_model.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/inputs.hpp"
 #include "firmware-app/commands/memory_plan.hpp"
+#include "firmware-app/commands/run_inputs.hpp"
 #include "firmware-app/config/config.hpp"
 #include "firmware-app/config/sensor_file.hpp"
 
@@ -18,6 +18,7 @@ namespace {
 
 /// Everything that the config names, opened.
 struct Checked {
+  TrackSettings track;
   SensorFile sensor;
   Intrinsics camera;
   std::string camera_origin;
@@ -37,11 +38,15 @@ Result<Checked> open_all(const Config& config) {
     options.sensor = *sensor;
     all.camera_origin = "from the sensor's description";
   }
+  all.track.max_regions = config.track.max_regions;
+  all.track.material = config.track.material.value_or(TrackSettings::kAsInModel);
+  SensorDescription readings = all.sensor.noise;
   all.camera = all.sensor.intrinsics();
   if (!config.source.empty()) {
     const Result<OpenSource> source = open_source(config.source, options);
     if (source) {
       all.camera = source->source->intrinsics();
+      readings = sensor_of(*source->source, options);
       all.camera_origin = "from the source";
     } else if (source.error().kind == ErrorKind::bad_input) {
       return source.error();
@@ -54,12 +59,14 @@ Result<Checked> open_all(const Config& config) {
   if (!config.model.empty() || brings_own_model(config.source)) {
     Result<ModelFile> model = load_model(config.model, config.source);
     if (!model) return model.error();
+    if (const Outcome tracked = check_tracker(*model, all.camera, readings, all.track); !tracked)
+      return at_key(config, config.model.empty() ? "source" : "model", tracked.error());
     all.model = std::move(*model);
     all.has_model = true;
   }
-  if (config.lcm.url != "none")
-    if (const Result<LcmUrl> url = LcmUrl::parse(config.lcm.url); !url) return url.error();
-  if (const Outcome prefix = check_channel_prefix(config.lcm.prefix); !prefix) return prefix.error();
+  if (const Outcome lcm = check_lcm(config); !lcm) return lcm.error();
+  if (const Outcome bind = check_bind(config.view.bind); !bind)
+    return at_key(config, "view.bind", bind.error());
   return all;
 }
 
@@ -73,10 +80,7 @@ int check(const std::string& path) {
   if (all->has_model) text += describe_model(all->model.view());
   text += fmt::format("camera: {}x{}, {}\n", all->camera.width, all->camera.height, all->camera_origin);
   if (all->has_model) {
-    TrackSettings settings;
-    settings.max_regions = config->track.max_regions;
-    settings.material = config->track.material.value_or(TrackSettings::kAsInModel);
-    text += fmt::format("memory, MB: {}\n", describe(plan_memory(all->model, all->camera, settings)));
+    text += fmt::format("memory, MB: {}\n", describe(plan_memory(all->model, all->camera, all->track)));
   } else {
     text += "memory: follows from the model; none is given\n";
   }

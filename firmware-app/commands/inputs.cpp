@@ -59,6 +59,10 @@ Result<OpenSource> open_source(const std::string& uri, const SourceOptions& opti
                                                  uri, kLiveSources, kKnown)};
 }
 
+SensorDescription sensor_of(const DepthSource& source, const SourceOptions& options) {
+  return options.sensor ? options.sensor->noise : source.sensor();
+}
+
 bool brings_own_model(std::string_view source_uri) {
   return source_uri.starts_with(kSimulated);
 }

@@ -29,6 +29,10 @@ struct OpenSource {
 /// is.
 [[nodiscard]] Result<OpenSource> open_source(const std::string& uri, const SourceOptions& options = {});
 
+/// What a source's readings are worth: as the sensor's description says where one is given, else as the
+/// source does.
+[[nodiscard]] SensorDescription sensor_of(const DepthSource& source, const SourceOptions& options);
+
 /// A simulated source needs no model file.
 [[nodiscard]] bool brings_own_model(std::string_view source_uri);
 

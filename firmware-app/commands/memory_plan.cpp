@@ -5,6 +5,7 @@
 #include "core/tracker.hpp"
 #include "drivers/lcm/publisher.hpp"
 #include "firmware-app/pipeline/frame_ring.hpp"
+#include "firmware-app/pipeline/memory_block.hpp"
 
 namespace pliant {
 
@@ -17,6 +18,16 @@ MemoryPlan plan_memory(const ModelFile& model, const Intrinsics& camera, const T
   // One set of buffers to encode into, and the publisher's slots.
   plan.messages = TrackMessages::max_bytes(points) * (1 + LcmPublisher::kFrameSlots);
   return plan;
+}
+
+Outcome check_tracker(const ModelFile& model, const Intrinsics& camera, const SensorDescription& sensor,
+                      const TrackSettings& settings) {
+  Result<MemoryBlock> block = MemoryBlock::allocate(Tracker::workspace_bytes(model.view(), camera, settings));
+  if (!block) return block.error();
+  Tracker tracker;
+  const char* const fault = tracker.start(model.view(), camera, sensor, settings, block->bytes());
+  if (fault == nullptr) return success();
+  return Error{ErrorKind::bad_input, fmt::format("the tracker cannot start: {}", fault)};
 }
 
 std::string describe(const MemoryPlan& plan) {

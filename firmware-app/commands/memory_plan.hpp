@@ -5,7 +5,9 @@
 #include <string>
 
 #include "core/camera/intrinsics.hpp"
+#include "core/camera/sensor.hpp"
 #include "core/track_settings.hpp"
+#include "drivers/common/result.hpp"
 #include "drivers/model_files/model_file.hpp"
 
 namespace pliant {
@@ -21,6 +23,9 @@ struct MemoryPlan {
 
 [[nodiscard]] MemoryPlan plan_memory(const ModelFile& model, const Intrinsics& camera,
                                      const TrackSettings& settings);
+/// Whether a tracker starts with these, tried with the memory that it takes; the words are those of a run.
+[[nodiscard]] Outcome check_tracker(const ModelFile& model, const Intrinsics& camera,
+                                    const SensorDescription& sensor, const TrackSettings& settings);
 /// "13.2 (workspace 9.1, model 0.9, frames 2.5, messages 0.7)", MB.
 [[nodiscard]] std::string describe(const MemoryPlan& plan);
 

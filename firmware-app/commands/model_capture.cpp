@@ -104,7 +104,8 @@ Taken take_pictures(DepthSource& source, const CaptureOptions& options, ObjectCa
 }
 
 /// Views of unknown poses, from any source that can be read to its end.
-Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, ObjectCapture& capture) {
+Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, const SensorDescription& sensor,
+                         ObjectCapture& capture) {
   std::vector<std::vector<std::uint16_t>> pictures;
   std::vector<DepthFrame> views;
   SourceItem item;
@@ -116,7 +117,7 @@ Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, Obj
   }
   LiveLine line;
   const Result<std::vector<std::size_t>> left =
-      place_views(views, source.intrinsics(), source.sensor(), capture, [&](std::size_t placed) {
+      place_views(views, source.intrinsics(), sensor, capture, [&](std::size_t placed) {
         line.show(fmt::format("placing the views: {} of {}", placed, views.size()));
       });
   line.clear();
@@ -130,7 +131,7 @@ Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, Obj
   return Taken{};
 }
 
-Result<OpenSource> open_input(const CaptureOptions& options) {
+Result<OpenSource> open_input(const CaptureOptions& options, const SourceOptions& source_options) {
   if (!options.views.empty()) {
     OpenSource open;
     Result<std::unique_ptr<DepthSource>> views =
@@ -142,12 +143,6 @@ Result<OpenSource> open_input(const CaptureOptions& options) {
   if (options.source.empty())
     return Error{ErrorKind::bad_input,
                  "nothing to capture from: name a source (--source openni2:), or files of single views"};
-  SourceOptions source_options;
-  if (!options.sensor.empty()) {
-    const Result<SensorFile> sensor = read_sensor(options.sensor);
-    if (!sensor) return sensor.error();
-    source_options.sensor = *sensor;
-  }
   return open_source(options.source, source_options);
 }
 
@@ -193,6 +188,8 @@ int capture(const CaptureOptions& given) {
   if (const std::string fault = refused_words(options); !fault.empty())
     return report({ErrorKind::bad_input, fault});
   if (const Outcome apart = files_apart(options); !apart) return report(apart.error());
+  if (options.lcm_url != "none")
+    if (const Outcome url = LcmPublisher::check_url(options.lcm_url); !url) return report(url.error());
   // A place that cannot be written to shows before the object was turned for half a minute, not after.
   for (const std::string& file : {options.output, options.ply}) {
     if (file.empty()) continue;
@@ -210,10 +207,16 @@ int capture(const CaptureOptions& given) {
     options.known = std::move(*poses);
     if (options.known.empty()) return report({ErrorKind::bad_input, options.poses + ": holds no pose"});
   }
-  Result<OpenSource> source = open_input(options);
+  SourceOptions source_options;
+  if (!options.sensor.empty()) {
+    const Result<SensorFile> read = read_sensor(options.sensor);
+    if (!read) return report(read.error());
+    source_options.sensor = *read;
+  }
+  Result<OpenSource> source = open_input(options, source_options);
   if (!source) return report(source.error());
   const Intrinsics& camera = source->source->intrinsics();
-  const SensorDescription& sensor = source->source->sensor();
+  const SensorDescription sensor = sensor_of(*source->source, source_options);
   if (options.capture.at_u >= camera.width || options.capture.at_v >= camera.height)
     return report({ErrorKind::bad_input,
                    fmt::format("--at {} {} lies outside the picture of {}x{}", options.capture.at_u,
@@ -231,7 +234,7 @@ int capture(const CaptureOptions& given) {
     return kExitFailed;
 
   const bool to_be_placed = !options.views.empty() && options.known.empty();
-  const Result<Taken> taken = to_be_placed ? take_views(*source->source, options, object)
+  const Result<Taken> taken = to_be_placed ? take_views(*source->source, options, sensor, object)
                                            : take_pictures(*source->source, options, object);
   source->source->close();
   if (!taken) return report(taken.error());
@@ -296,7 +299,7 @@ void add_model_capture(CLI::App& model, Work& work) {
       ->check(names_a_file())
       ->type_name("P.ply");
   app->add_option("--sensor", options->sensor,
-                  "Sensor description (TOML): mode, camera and noise of a device")
+                  "Sensor description (TOML): mode, camera and noise of a device, noise of any other source")
       ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--poses", options->poses,

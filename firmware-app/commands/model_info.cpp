@@ -19,6 +19,11 @@ int info(const std::string& path) {
   const Result<ModelFile> file = ModelFile::open(path);
   if (!file) return report(file.error());
   std::string text = describe_model(file->view());
+  constexpr Intrinsics kCamera{320, 240, 288, 288, 160, 120, 1000};
+  if (const Outcome tracked = check_tracker(*file, kCamera, {}, {}); !tracked) {
+    text += fmt::format("tracking: not possible, {}\n", tracked.error().message);
+    return print(text) ? kExitDone : kExitFailed;
+  }
   LiveLine line;
   line.show("looking for the model in simulated pictures of it");
   const ExpectedDetection expected = expect_detection(file->view());

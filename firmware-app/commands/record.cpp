@@ -25,9 +25,10 @@ struct RecordOptions {
 /// What the frames of a source become.
 class Recorder {
  public:
-  [[nodiscard]] Outcome open(const std::string& folder, const OpenSource& source) {
+  [[nodiscard]] Outcome open(const std::string& folder, const OpenSource& source,
+                             const SensorDescription& sensor) {
     Result<std::unique_ptr<RecordingWriter>> writer =
-        RecordingWriter::create(folder, {source.source->intrinsics(), source.source->sensor()});
+        RecordingWriter::create(folder, {source.source->intrinsics(), sensor});
     if (!writer) return writer.error();
     writer_ = std::move(*writer);
     if (source.source->live())
@@ -90,7 +91,10 @@ int record(const RecordOptions& options) {
   Result<OpenSource> source = open_source(options.source, source_options);
   if (!source) return report(source.error());
   Recorder recorder;
-  if (const Outcome opened = recorder.open(options.output, *source); !opened) return report(opened.error());
+  if (const Outcome opened =
+          recorder.open(options.output, *source, sensor_of(*source->source, source_options));
+      !opened)
+    return report(opened.error());
 
   LiveLine line;
   SourceItem item;
@@ -144,7 +148,7 @@ void add_record(CLI::App& program, Work& work) {
       ->check(names_a_folder())
       ->type_name("DIR");
   app->add_option("--sensor", options->sensor,
-                  "Sensor description (TOML): mode, camera and noise of a device")
+                  "Sensor description (TOML): mode, camera and noise of a device, noise of any other source")
       ->check(names_a_file())
       ->type_name("FILE");
   app->add_option("--frames", options->frames, "Take this many frames from the source")

@@ -245,7 +245,7 @@ void add_run(CLI::App& program, Work& work) {
       ->type_name("FILE");
   app->add_option("--source", options->source, kSourceHelp)->type_name("URI");
   app->add_option("--sensor", options->sensor,
-                  "Sensor description (TOML): mode, camera and noise of a device")
+                  "Sensor description (TOML): mode, camera and noise of a device, noise of any other source")
       ->check(names_a_file())
       ->type_name("FILE");
   app->add_flag("--publish-depth", options->publish_depth, "Publish the depth frames too");

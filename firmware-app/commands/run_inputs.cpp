@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "drivers/lcm/lcm_url.hpp"
 #include "drivers/lcm/publisher.hpp"
 #include "firmware-app/commands/named_files.hpp"
 #include "firmware-app/config/sensor_file.hpp"
@@ -18,7 +17,10 @@ Result<Config> merged_config(const RunOptions& options) {
   }
   if (options.model) config.model = *options.model;
   if (options.source) config.source = *options.source;
-  if (options.lcm_url) config.lcm.url = *options.lcm_url;
+  if (options.lcm_url) {
+    config.lcm.url = *options.lcm_url;
+    config.places.erase("lcm.url");
+  }
   if (options.sensor) config.sensor.description = *options.sensor;
   if (options.publish_depth) config.lcm.publish_depth = true;
   if (options.threads) config.run.threads = *options.threads;
@@ -35,7 +37,6 @@ RunSettings settings_of(const RunOptions& options, const Config& config, const D
   RunSettings settings;
   settings.source_name = config.source;
   settings.version = PLIANT_VERSION;
-  settings.sensor = source.sensor();
   settings.track.max_regions = config.track.max_regions;
   settings.track.material = config.track.material.value_or(TrackSettings::kAsInModel);
   settings.track.kernels = options.kernels;
@@ -73,15 +74,21 @@ Outcome files_apart(const RunOptions& options, const Config& config) {
 
 }  // namespace
 
+Outcome check_lcm(const Config& config) {
+  if (config.lcm.url != "none")
+    if (const Outcome url = LcmPublisher::check_url(config.lcm.url); !url)
+      return at_key(config, "lcm.url", url.error());
+  if (const Outcome prefix = check_channel_prefix(config.lcm.prefix); !prefix)
+    return at_key(config, "lcm.prefix", prefix.error());
+  return success();
+}
+
 Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& config, const RunInputs* before) {
   if (Outcome apart = files_apart(options, config); !apart) return apart.error();
   RunInputs inputs;
   inputs.config = config;
   // Before anything is opened, so that a wrong word costs no file what it holds.
-  const Outcome publishing = config.lcm.url == "none"
-                                 ? check_channel_prefix(config.lcm.prefix)
-                                 : LcmPublisher::check({config.lcm.url, config.lcm.prefix});
-  if (!publishing) return publishing.error();
+  if (const Outcome lcm = check_lcm(config); !lcm) return lcm.error();
   SourceOptions source_options;
   source_options.patience = config.sensor.patience_s;
   if (!config.sensor.description.empty()) {
@@ -108,7 +115,7 @@ Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& confi
       before != nullptr && before->model->view().header().checksum == model->view().header().checksum;
   inputs.model = same_model ? before->model : std::make_shared<ModelFile>(std::move(*model));
   inputs.settings = settings_of(options, config, *inputs.source->source);
-  if (source_options.sensor) inputs.settings.sensor = source_options.sensor->noise;
+  inputs.settings.sensor = sensor_of(*inputs.source->source, source_options);
   return inputs;
 }
 

@@ -37,6 +37,9 @@ struct RunInputs {
 /// column.
 [[nodiscard]] Result<Config> merged_config(const RunOptions& options);
 
+/// Whether a run could publish as `config` says, as far as that shows without doing it.
+[[nodiscard]] Outcome check_lcm(const Config& config);
+
 /// Opens and checks all that `config` names. What `before` (may be null) has open already and the config
 /// names again is taken over.
 [[nodiscard]] Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& config,

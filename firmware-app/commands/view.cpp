@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "drivers/lcm/lcm_url.hpp"
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
 #include "firmware-app/commands/option_checks.hpp"
@@ -46,15 +47,34 @@ int view(const ViewOptions& options) {
     if (!read) return report(read.error());
     config = *read;
   }
+  if (options.bind) {
+    config.view.bind = *options.bind;
+    config.places.erase("view.bind");
+  }
+  if (options.url) {
+    config.lcm.url = *options.url;
+    config.places.erase("lcm.url");
+  }
+  if (options.prefix) {
+    config.lcm.prefix = *options.prefix;
+    config.places.erase("lcm.prefix");
+  }
+  if (const Outcome bind = check_bind(config.view.bind); !bind)
+    return report(at_key(config, "view.bind", bind.error()));
+  if (config.lcm.url != "none")
+    if (const Result<LcmUrl> url = LcmUrl::parse(config.lcm.url); !url)
+      return report(at_key(config, "lcm.url", url.error()));
+  if (const Outcome prefix = check_channel_prefix(config.lcm.prefix); !prefix)
+    return report(at_key(config, "lcm.prefix", prefix.error()));
   std::vector<std::string> words = {viewer_program(),
                                     "--bind",
-                                    options.bind.value_or(config.view.bind),
+                                    config.view.bind,
                                     "--port",
                                     std::to_string(options.port.value_or(config.view.port)),
                                     "--lcm-url",
-                                    options.url.value_or(config.lcm.url),
+                                    config.lcm.url,
                                     "--prefix",
-                                    options.prefix.value_or(config.lcm.prefix)};
+                                    config.lcm.prefix};
   if (words[0].empty())
     return report(
         {ErrorKind::bad_input,

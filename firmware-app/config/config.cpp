@@ -1,6 +1,10 @@
 #include "firmware-app/config/config.hpp"
 
+#include <arpa/inet.h>
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -48,7 +52,7 @@ void make_relative_to(const std::filesystem::path& folder, std::string& path) {
 Outcome parse_config(std::string_view text, std::string_view name, Config& config) {
   Config candidate = config;
   const std::vector<Setting> settings = config_settings(candidate);
-  if (Outcome parsed = parse_settings(text, name, settings); !parsed) return parsed;
+  if (Outcome parsed = parse_settings(text, name, settings, &candidate.places); !parsed) return parsed;
   config = candidate;
   return success();
 }
@@ -75,6 +79,29 @@ Result<Config> read_config(const std::string& path) {
     config.lcm.url = std::string(kLogFile) + file + config.lcm.url.substr(options);
   }
   return config;
+}
+
+Error at_key(const Config& config, std::string_view key, const Error& error) {
+  const auto place = config.places.find(key);
+  if (place == config.places.end()) return error;
+  return {error.kind, fmt::format("{}: {}: {}", place->second, key, error.message)};
+}
+
+Outcome check_bind(const std::string& address) {
+  constexpr std::string_view kNumbers = "0123456789.";
+  constexpr std::string_view kNames = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._";
+  std::array<std::byte, sizeof(in6_addr)> ignored{};
+  const bool number = address.find_first_not_of(kNumbers) == std::string::npos;
+  const bool known = address.find(':') != std::string::npos
+                         ? inet_pton(AF_INET6, address.c_str(), ignored.data()) == 1
+                     : number ? inet_pton(AF_INET, address.c_str(), ignored.data()) == 1
+                              : address.find_first_not_of(kNames) == std::string::npos;
+  if (known) return success();
+  return Error{
+      ErrorKind::bad_input,
+      fmt::format("'{}' is no address to listen on; 127.0.0.1 is this machine's own, 0.0.0.0 all of its "
+                  "networks'",
+                  address)};
 }
 
 std::string changed_keys(const Config& before, const Config& after) {

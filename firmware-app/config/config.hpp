@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/common/result.hpp"
+#include "firmware-app/config/settings_table.hpp"
 
 namespace pliant {
 
@@ -39,6 +40,7 @@ struct Config {
     std::string bind = "127.0.0.1";
     int port = 8080;
   } view;
+  SettingPlaces places;  ///< of the keys that a file sets
 };
 
 /// Reads TOML text into `config`; keys that are not there keep what `config` holds. An error names `name`,
@@ -47,6 +49,13 @@ struct Config {
 
 /// Reads a file. Paths in it (model, sensor description) are taken relative to its folder.
 [[nodiscard]] Result<Config> read_config(const std::string& path);
+
+/// `error` about a key's value, with the place in the file where that stands.
+[[nodiscard]] Error at_key(const Config& config, std::string_view key, const Error& error);
+
+/// Why `[view] bind` can be no address to listen on: a number that is none, or a name that no host can have.
+/// Whether it is this machine's shows when it is listened on.
+[[nodiscard]] Outcome check_bind(const std::string& address);
 
 /// The keys whose values differ, "track.budget_ms, lcm.prefix"; empty when none does.
 [[nodiscard]] std::string changed_keys(const Config& before, const Config& after);

@@ -96,10 +96,16 @@ struct Assign {
 };
 
 Outcome assign(const toml::node& node, const toml::source_region& where, std::string_view name,
-               std::string_view table, std::string_view key, std::span<const Setting> settings) {
+               std::string_view table, std::string_view key, std::span<const Setting> settings,
+               SettingPlaces* places) {
   for (const Setting& s : settings)
     if (s.table == table && s.key == key) {
-      if (std::visit(Assign{node, s}, s.target)) return success();
+      if (std::visit(Assign{node, s}, s.target)) {
+        const toml::source_position& begin = node.source().begin;
+        if (places != nullptr)
+          (*places)[full_name(table, key)] = fmt::format("{}:{}:{}", name, begin.line, begin.column);
+        return success();
+      }
       return error_at(name, node.source(),
                       fmt::format("{} must be {}", full_name(table, key), allowed_values(s)));
     }
@@ -111,7 +117,8 @@ Outcome assign(const toml::node& node, const toml::source_region& where, std::st
 
 }  // namespace
 
-Outcome parse_settings(std::string_view text, std::string_view name, std::span<const Setting> settings) {
+Outcome parse_settings(std::string_view text, std::string_view name, std::span<const Setting> settings,
+                       SettingPlaces* places) {
   if (text.size() > kMaxSettingsText)
     return Error{ErrorKind::bad_input, fmt::format("{} is longer than 1 MB", name)};
   const Result<toml::table> parsed = parse_toml(text, name);
@@ -125,11 +132,12 @@ Outcome parse_settings(std::string_view text, std::string_view name, std::span<c
         return error_at(
             name, node.source(),
             fmt::format("'{}' must be a table, written [{}]", printable(key.str()), printable(key.str())));
-      if (Outcome done = assign(node, key.source(), name, "", key.str(), settings); !done) return done;
+      if (Outcome done = assign(node, key.source(), name, "", key.str(), settings, places); !done)
+        return done;
       continue;
     }
     for (const auto& [inner, value] : *node.as_table())
-      if (Outcome done = assign(value, inner.source(), name, key.str(), inner.str(), settings); !done)
+      if (Outcome done = assign(value, inner.source(), name, key.str(), inner.str(), settings, places); !done)
         return done;
   }
   return success();

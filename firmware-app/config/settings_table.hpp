@@ -1,6 +1,7 @@
 // Tables of settings: every key of a TOML file declared once, with its range, unit and meaning.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,13 +28,16 @@ struct Setting {
   std::string_view meaning;
 };
 
+/// Where a file sets what: "lcm.url" -> "pliant.toml:3:7".
+using SettingPlaces = std::map<std::string, std::string, std::less<>>;
+
 /// Longest text that is read, bytes: a config is written by hand.
 inline constexpr std::size_t kMaxSettingsText = std::size_t{1} << 20;
 
 /// Reads TOML `text` into the settings' targets. On error (file `name`, line, column, what is allowed)
-/// targets may have been written in part: read into a copy.
+/// targets may have been written in part: read into a copy. `places` (may be null) is told of each key.
 [[nodiscard]] Outcome parse_settings(std::string_view text, std::string_view name,
-                                     std::span<const Setting> settings);
+                                     std::span<const Setting> settings, SettingPlaces* places = nullptr);
 
 /// What a key may hold, in words: "a number from 0 to 1", "true or false".
 [[nodiscard]] std::string allowed_values(const Setting& setting);

@@ -206,6 +206,27 @@ TEST_F(CaptureCommand, TakesKnownPoses) {
   expect_refused(run_pliant(command), 2, {"other.txt:1"});
 }
 
+TEST_F(CaptureCommand, TheSensorsDescriptionWinsOverTheSource) {
+  write_file(at("sensor.toml"), "[noise]\nnoise_floor = 0.01\n");
+  const std::vector<std::string> plain = {
+      "model", "capture", "--source", "simulated:box?frames=2&width=160&height=120", "-o", at("m")};
+  std::vector<std::string> described = plain;
+  described.insert(described.end(), {"--sensor", at("sensor.toml")});
+  const auto voxels = [](const Ended& ended) { return ended.out.substr(0, ended.out.find('\n')); };
+  const std::string without = voxels(run_pliant(plain)), with = voxels(run_pliant(described));
+  EXPECT_TRUE(with.starts_with("memory: ")) << with;
+  EXPECT_NE(with, without);  // their size follows from the noise
+}
+
+TEST_F(CaptureCommand, AMalformedNetworkIsRefused) {
+  for (const char* url : {"bogus", "udpm://1.2.3.4:1", "file://x"}) {
+    std::vector<std::string> command = words(kTurned, at("m"));
+    command.back() = url;
+    expect_refused(run_pliant(command), 2, {url});
+    EXPECT_FALSE(std::filesystem::exists(at("m")));
+  }
+}
+
 TEST_F(CaptureCommand, BadWordsAreRefused) {
   std::vector<std::string> command = words(kTurned, at("m"));
   command.insert(command.end(), {"--at", "700", "10"});

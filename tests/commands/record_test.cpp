@@ -29,6 +29,19 @@ TEST_F(RecordCommand, FramesLimitsTheNumber) {
   EXPECT_EQ(count_files(folder_ / "r/depth"), 2U);
 }
 
+TEST_F(RecordCommand, TheSensorsDescriptionWinsOverTheSource) {
+  write_file(at("sensor.toml"), "[noise]\nnoise_floor = 0.0123\n");
+  const std::string first = small_recording(2);
+  const std::string sources[] = {"recording:" + first, "simulated:box?width=160&height=120&frames=2"};
+  for (const std::string& source : sources) {
+    std::filesystem::remove_all(at("second"));
+    const Ended ended =
+        run_pliant({"record", "--source", source, "--sensor", at("sensor.toml"), "-o", at("second")});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_NE(read_file(at("second/camera.toml")).find("0.0123"), std::string::npos) << source;
+  }
+}
+
 TEST_F(RecordCommand, AFolderThatHoldsARecordingIsRefused) {
   const std::string folder = small_recording(1);
   expect_refused(run_pliant({"record", "--source", "simulated:box", "-o", folder}), 2, {folder});

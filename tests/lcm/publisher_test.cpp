@@ -241,14 +241,14 @@ TEST(LcmPublisher, AFullDiskIsToldAndTheLogEndsWithAWholeMessage) {
 TEST(LcmPublisher, CheckOpensNothing) {
   const TemporaryFile file("checked.log");
   std::ofstream(file.path()) << "what was there";
-  EXPECT_TRUE(LcmPublisher::check({.url = "file://" + file.path() + "?mode=w"}));
+  EXPECT_TRUE(LcmPublisher::check_url("file://" + file.path() + "?mode=w"));
   EXPECT_EQ(std::filesystem::file_size(file.path()), 14U);
   const TemporaryFile none("none");
-  EXPECT_TRUE(LcmPublisher::check({.url = "file://" + none.path() + "?mode=w"}));
+  EXPECT_TRUE(LcmPublisher::check_url("file://" + none.path() + "?mode=w"));
   EXPECT_FALSE(std::filesystem::exists(none.path()));
   for (const std::string& path :
        {none.path() + "/x.log", std::filesystem::temp_directory_path().string(), file.path() + "/x"}) {
-    const Outcome checked = LcmPublisher::check({.url = "file://" + path + "?mode=w"});
+    const Outcome checked = LcmPublisher::check_url("file://" + path + "?mode=w");
     ASSERT_FALSE(checked) << path;
     EXPECT_EQ(checked.error().kind, ErrorKind::write);
   }
