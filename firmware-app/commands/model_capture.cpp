@@ -109,7 +109,8 @@ Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, con
   std::vector<std::vector<std::uint16_t>> pictures;
   std::vector<DepthFrame> views;
   SourceItem item;
-  for (source.next(0, item); item.event == SourceEvent::frame; source.next(0, item)) {
+  for (source.next(0, item); item.event == SourceEvent::frame && !StopSignal::requested();
+       source.next(0, item)) {
     const std::ptrdiff_t pixels = std::ptrdiff_t{item.frame.stride} * item.frame.height;
     pictures.emplace_back(item.frame.depth, item.frame.depth + pixels);
     views.push_back(item.frame);
@@ -124,7 +125,8 @@ Result<Taken> take_views(DepthSource& source, const CaptureOptions& options, con
   if (!left) return left.error();
   for (const std::size_t i : *left)
     print_warning(fmt::format("{}: left out, {}", options.views[i],
-                              capture.figures().fused == 0
+                              StopSignal::requested() ? "the capture was ended before"
+                              : capture.figures().fused == 0
                                   ? "no object stands before the background"
                                   : "its place among the other views is not clear; give --poses, or views "
                                     "that share more"));
@@ -149,6 +151,10 @@ Result<OpenSource> open_input(const CaptureOptions& options, const SourceOptions
 /// Why nothing was captured, and the exit code.
 int report_nothing(const CaptureOptions& options, const Taken& taken, const ObjectCapture& object) {
   if (taken.last == SourceEvent::lost) return report({ErrorKind::device, taken.fault});
+  if (StopSignal::requested()) {
+    print_warning("ended before anything was captured");
+    return kExitNotFound;
+  }
   if (!options.known.empty() && taken.bad_frames > 0 && object.figures().frames == 0)
     return report({ErrorKind::bad_input, options.poses + ": no pose has the time of a frame"});
   if (options.views.empty() && object.figures().frames == 0)
@@ -163,6 +169,8 @@ std::string refused_words(const CaptureOptions& options) {
   if (!options.views.empty() && !options.source.empty())
     return "--source and files of views exclude each other";
   if (!options.camera.empty() && options.views.empty()) return "--camera is for files of single views";
+  if (options.frames >= 0 && !options.views.empty())
+    return "--frames is for a source; of files, name as many as are wanted";
   if (options.views.size() > kMaxKeyframes)
     return fmt::format("{} views are too many, {} at most; make a recording of them (--source recording:DIR)",
                        options.views.size(), kMaxKeyframes);

@@ -5,6 +5,7 @@
 #include "drivers/model_files/captured_mesh.hpp"
 #include "drivers/model_files/model_builder.hpp"
 #include "firmware-app/commands/one_shot_detector.hpp"
+#include "firmware-app/pipeline/stop_signal.hpp"
 
 namespace pliant {
 
@@ -57,16 +58,19 @@ Result<std::vector<std::size_t>> place_views(const std::vector<DepthFrame>& view
                                              const std::function<void(std::size_t)>& tell) {
   std::vector<std::size_t> left;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const bool begun = capture.figures().fused > 0;
-    if (begun || capture.process(views[i]).state != CaptureState::capturing) left.push_back(i);
+    const bool done = capture.figures().fused > 0 || StopSignal::requested();
+    if (done || capture.process(views[i]).state != CaptureState::capturing) left.push_back(i);
   }
-  while (!left.empty() && capture.figures().fused > 0) {
+  while (!left.empty() && capture.figures().fused > 0 && !StopSignal::requested()) {
     tell(views.size() - left.size());
     Result<Search> search = search_for(capture, camera, sensor);
     if (!search) return search.error();
-    const auto next = std::find_if(left.begin(), left.end(),
-                                   [&](std::size_t i) { return place(views[i], *search, capture); });
-    if (next == left.end()) break;
+    bool placed = false;
+    const auto next = std::find_if(left.begin(), left.end(), [&](std::size_t i) {
+      placed = !StopSignal::requested() && place(views[i], *search, capture);
+      return placed || StopSignal::requested();
+    });
+    if (!placed) break;
     left.erase(next);
   }
   return left;

@@ -1,4 +1,7 @@
 // pliant model capture, from files of single views.
+#include <signal.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <sstream>
 
@@ -146,6 +149,20 @@ TEST_F(ViewsCommand, AViewOfSomethingElseIsLeftOutByName) {
   EXPECT_NE(captured.out.find("fused: 2 of 2 pictures"), std::string::npos) << captured.out;
 }
 
+TEST_F(ViewsCommand, AnInterruptKeepsTheViewsThatArePlaced) {
+  std::vector<std::string> command = capture_of(pictures());
+  command.insert(command.end(), {"--camera", camera()});
+  const pid_t process = start_pliant(command, folder_);
+  // Its first line comes when the views are about to be placed, which takes seconds.
+  for (int i = 0; i < 500 && read_file(folder_ / "out.txt").empty(); ++i) usleep(20'000);
+  usleep(700'000);
+  kill(process, SIGTERM);
+  const Ended ended = wait_for(process, folder_);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("left out, the capture was ended before"), std::string::npos) << ended.err;
+  EXPECT_EQ(run_pliant({"model", "info", at("figure.model")}).code, 0);
+}
+
 TEST_F(ViewsCommand, WhatCannotBeAViewIsRefused) {
   expect_refused(run_pliant(capture_of({picture(0)})), 2, {"000000.png", "--camera"});
   expect_refused(run_pliant(capture_of({at("none.ply")})), 2, {"none.ply"});
@@ -163,6 +180,9 @@ TEST_F(ViewsCommand, WhatCannotBeAViewIsRefused) {
   command.insert(command.end(), {"--camera", camera()});
   expect_refused(run_pliant(command), 2, {"--camera", "files"});
   expect_refused(run_pliant({"model", "capture", "-o", at("m")}), 2, {"--source", "files"});
+  command = capture_of({cloud(0)});
+  command.insert(command.end(), {"--frames", "1"});
+  expect_refused(run_pliant(command), 2, {"--frames", "source"});
 }
 
 }  // namespace
