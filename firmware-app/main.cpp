@@ -6,6 +6,8 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "firmware-app/commands/commands.hpp"
 #include "firmware-app/commands/console.hpp"
@@ -23,6 +25,19 @@ std::string chosen_name(const CLI::App& program) {
     name += " " + app->get_name();
   }
   return name;
+}
+
+/// What is wrong where a command is missing or is none of those there are; empty where nothing of that is.
+std::string command_fault(const CLI::App& program) {
+  const CLI::App* app = &program;
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  std::string known;
+  for (const CLI::App* command : app->get_subcommands([](const CLI::App*) { return true; }))
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  if (known.empty()) return {};
+  const std::vector<std::string> words = program.remaining(true);
+  if (words.empty()) return fmt::format("a command is missing; there are {}", known);
+  return fmt::format("'{}' is no command; there are {}", words.front(), known);
 }
 
 int run_program(int count, char** words) {
@@ -51,7 +66,9 @@ int run_program(int count, char** words) {
     std::cout.flush();
     return std::cout ? kExitDone : kExitFailed;
   } catch (const CLI::ParseError& fault) {
-    print_warning(fmt::format("{}; see '{} --help'", fault.what(), chosen_name(program)));
+    const std::string command = command_fault(program);
+    print_warning(
+        fmt::format("{}; see '{} --help'", command.empty() ? fault.what() : command, chosen_name(program)));
     return kExitBadInput;
   }
   return work ? work() : kExitBadInput;

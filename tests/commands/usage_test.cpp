@@ -32,6 +32,15 @@ TEST(Usage, UnknownWordsAreRefusedInOneLine) {
   expect_refused(run_pliant({"run", "--frames", "many"}), 2, {"--frames"});
 }
 
+TEST(Usage, AWordThatIsNoCommandIsNamedWithThoseThereAre) {
+  expect_refused(run_pliant({"bogus"}), 2, {"'bogus' is no command", "model, ", "run", "export"});
+  expect_refused(run_pliant({"--bogus", "run"}), 2, {"--bogus"});
+  expect_refused(run_pliant({"model", "biuld", "x", "-o", "y"}), 2,
+                 {"'biuld' is no command", "build, capture, info, export", "pliant model --help"});
+  expect_refused(run_pliant({"model"}), 2, {"a command is missing", "build"});
+  expect_refused(run_pliant({}), 2, {"a command is missing", "register"});
+}
+
 TEST(Usage, ValuesOutOfRangeAreRefusedInOneLine) {
   expect_refused(run_pliant({"run", "--frames", "0"}), 2, {"--frames"});
   expect_refused(run_pliant({"run", "--frames", "-3"}), 2, {"--frames"});
