@@ -25,6 +25,25 @@ TEST(SensorFile, NearMustBeBelowFar) {
   EXPECT_NE(parsed.error().message.find("near_limit must be below"), std::string::npos);
 }
 
+TEST(SensorFile, AUnitHasOneRange) {
+  for (const char* scale : {"10", "200000", "1000000"}) {
+    SensorFile sensor;
+    const Outcome parsed =
+        parse_sensor(std::string("[camera]\ndepth_scale = ") + scale + "\n", "s.toml", sensor);
+    EXPECT_TRUE(parsed) << parsed.error().message;
+  }
+  for (const char* scale : {"5", "9.9", "2000000"}) {
+    SensorFile sensor;
+    const Outcome parsed =
+        parse_sensor(std::string("[camera]\ndepth_scale = ") + scale + "\n", "s.toml", sensor);
+    ASSERT_FALSE(parsed);
+    EXPECT_NE(
+        parsed.error().message.find("s.toml:2:15: camera.depth_scale must be a number from 10 to 1e+06"),
+        std::string::npos)
+        << parsed.error().message;
+  }
+}
+
 TEST(SensorFile, RangesHold) {
   SensorFile sensor;
   EXPECT_FALSE(parse_sensor("[mode]\nwidth = 31\n", "s.toml", sensor));
