@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sched.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
@@ -18,6 +19,26 @@ constexpr std::size_t kStackBytes = std::size_t{4} << 20;
 void* run(void* work) {
   (*static_cast<std::function<void()>*>(work))();
   return nullptr;
+}
+
+/// Binds `thread` to those of the processors `wanted` that there are; empty, or what is wrong with them.
+std::string bind_to(pthread_t thread, const std::vector<int>& wanted) {
+  cpu_set_t processors, given;
+  CPU_ZERO(&processors);
+  CPU_ZERO(&given);
+  for (const int cpu : wanted)
+    if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &processors);
+  const int error = pthread_setaffinity_np(thread, sizeof processors, &processors);
+  if (error != 0 && error != EINVAL) return std::strerror(error);
+  // What is not there the system leaves out without a word; it refuses when nothing is left.
+  if (error == 0 && pthread_getaffinity_np(thread, sizeof given, &given) != 0) return "";
+  std::vector<int> missing;
+  for (const int cpu : wanted)
+    if (cpu < 0 || cpu >= CPU_SETSIZE || !CPU_ISSET(static_cast<std::size_t>(cpu), &given))
+      missing.push_back(cpu);
+  if (missing.empty()) return "";
+  return fmt::format("{} not there, or not allowed; it runs on {}", fmt::join(missing, ", "),
+                     error == 0 ? "the others" : "any");
 }
 
 }  // namespace
@@ -46,15 +67,10 @@ Outcome Worker::start(const WorkerSettings& settings, std::function<void()> work
       warning = fmt::format("no real-time priority {} for {} ({}); run as root or raise the rtprio limit",
                             settings.priority, settings.name, std::strerror(error));
   }
-  if (!settings.affinity.empty()) {
-    cpu_set_t processors;
-    CPU_ZERO(&processors);
-    for (const int cpu : settings.affinity)
-      if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &processors);
-    if (const int error = pthread_setaffinity_np(thread_, sizeof processors, &processors); error != 0)
-      warning =
-          fmt::format("cannot bind {} to the processors asked for: {}", settings.name, std::strerror(error));
-  }
+  if (!settings.affinity.empty())
+    if (const std::string fault = bind_to(thread_, settings.affinity); !fault.empty())
+      warning += fmt::format("{}cannot bind {} to the processors asked for: {}", warning.empty() ? "" : "; ",
+                             settings.name, fault);
   return success();
 }
 

@@ -72,6 +72,14 @@ TEST(Worker, TellsOfProcessorsThatAreNotThere) {
   EXPECT_GE(p.processors, 1);
 }
 
+TEST(Worker, NamesTheProcessorsThatAreNotThereBesideThoseThatAre) {
+  std::string warning;
+  const Placement p = placement_on({.name = "test", .priority = 0, .affinity = {0, 1022, 1023}}, warning);
+  EXPECT_NE(warning.find("1022, 1023 not there"), std::string::npos) << warning;
+  EXPECT_EQ(p.processors, 1);
+  EXPECT_TRUE(p.on_first);
+}
+
 TEST(Worker, WorkThatHangsDoesNotHoldTheOthersUp) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   auto ended = std::make_shared<std::atomic<bool>>(false);
