@@ -7,6 +7,8 @@ import sys
 
 import lcm_python
 
+if len(sys.argv) < 2:
+    sys.exit(__doc__)
 threshold = float(sys.argv[1]) / 1000
 url = sys.argv[2] if len(sys.argv) > 2 else lcm_python.DEFAULT_URL
 prefix = sys.argv[3] if len(sys.argv) > 3 else "PLIANT"

@@ -47,6 +47,9 @@ class Examples(unittest.TestCase):
         words = {"follow_pose": [URL], "list_deformed": [str(THRESHOLD), URL],
                  "overlay": [str(folder / "overlay.ppm"), *(camera[key] for key in
                                                             ("width", "height", "fx", "fy", "cx", "cy")), URL]}
+        cls.without_words = {example: subprocess.run(languages.command(options, example, class_path),
+                                                     capture_output=True, text=True, timeout=60)
+                             for example in ("list_deformed", "overlay")}
         running, outputs = [], {}
         try:
             if options.language == "python":
@@ -85,6 +88,12 @@ class Examples(unittest.TestCase):
 
     def test_all_of_them_keep_running(self):
         self.assertTrue(all(self.alive), self.alive)
+
+    def test_without_words_the_usage_is_told(self):
+        for example, ended in self.without_words.items():
+            self.assertNotEqual(ended.returncode, 0)
+            self.assertIn("[URL] [PREFIX]", ended.stderr, example)
+            self.assertNotRegex(ended.stderr, "Traceback|Exception")
 
     def test_the_path_that_is_followed_is_that_of_the_tracker(self):
         path = [[float(word) for word in line.split()] for line in (self.folder / "path.txt").read_text().splitlines()]
