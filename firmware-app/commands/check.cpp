@@ -73,6 +73,9 @@ Result<Checked> open_all(const Config& config) {
 int check(const std::string& path) {
   const Result<Config> config = read_config(path);
   if (!config) return report(config.error());
+  RunOptions run;
+  run.config = path;
+  if (const Outcome apart = check_files(run, *config); !apart) return report(apart.error());
   const Result<Checked> all = open_all(*config);
   if (!all) return report(all.error());
 

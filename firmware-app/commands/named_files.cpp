@@ -85,7 +85,7 @@ Outcome NamedFiles::apart(const Named& written, const Named& other) {
                              written.path, other.option)};
   }
   if (other.use == Use::read_folder && is_inside(written.place, other.place) &&
-      fs::exists(written.path, fault))
+      fs::exists(written.path, fault) && !fs::is_directory(written.path, fault))
     return Error{
         ErrorKind::bad_input,
         fmt::format("{} would write over {}, which is in the recording that {} names; name another file",

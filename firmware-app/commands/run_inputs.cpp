@@ -56,9 +56,7 @@ RunSettings settings_of(const RunOptions& options, const Config& config, const D
 
 }  // namespace
 
-namespace {
-
-Outcome files_apart(const RunOptions& options, const Config& config) {
+Outcome check_files(const RunOptions& options, const Config& config) {
   return NamedFiles()
       .reads("--config", options.config)
       .reads(option_or_key(options.model.has_value(), "--model", "model"), config.model)
@@ -72,8 +70,6 @@ Outcome files_apart(const RunOptions& options, const Config& config) {
       .apart();
 }
 
-}  // namespace
-
 Outcome check_lcm(const Config& config) {
   if (config.lcm.url != "none")
     if (const Outcome url = LcmPublisher::check_url(config.lcm.url); !url)
@@ -84,7 +80,7 @@ Outcome check_lcm(const Config& config) {
 }
 
 Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& config, const RunInputs* before) {
-  if (Outcome apart = files_apart(options, config); !apart) return apart.error();
+  if (Outcome apart = check_files(options, config); !apart) return apart.error();
   RunInputs inputs;
   inputs.config = config;
   // Before anything is opened, so that a wrong word costs no file what it holds.

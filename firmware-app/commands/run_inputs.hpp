@@ -37,6 +37,9 @@ struct RunInputs {
 /// column.
 [[nodiscard]] Result<Config> merged_config(const RunOptions& options);
 
+/// Whether no file that a run writes is one that it reads, or writes for another option.
+[[nodiscard]] Outcome check_files(const RunOptions& options, const Config& config);
+
 /// Whether a run could publish as `config` says, as far as that shows without doing it.
 [[nodiscard]] Outcome check_lcm(const Config& config);
 

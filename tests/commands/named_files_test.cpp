@@ -38,9 +38,10 @@ TEST_F(NamedFilesTest, RunKeepsWhatItReads) {
       expect_kept(recording + "/" + name,
                   run_with({"--source", source, "--model", model, option, recording + "/" + name}),
                   {option, "--source", "recording"});
-  // A file that is new does no harm there.
-  const Ended beside =
-      run_pliant(run_with({"--source", source, "--model", model, "--trajectory", recording + "/path.txt"}));
+  // A file that is new does no harm there, nor does a folder.
+  std::filesystem::create_directories(recording + "/points");
+  const Ended beside = run_pliant(run_with({"--source", source, "--model", model, "--trajectory",
+                                            recording + "/path.txt", "--points", recording + "/points"}));
   EXPECT_TRUE(beside.code == 0 || beside.code == 1) << beside.err;
   write_file(at("p.toml"), "source = \"recording:recording\"\nmodel = \"box.model\"\n");
   expect_kept(at("p.toml"), run_with({"--config", at("p.toml"), "--stats", at("p.toml")}),
@@ -77,6 +78,11 @@ TEST_F(NamedFilesTest, ALogIsNotPlayedOntoItself) {
   ASSERT_EQ(run_pliant({"run", "--source", kSource, "--publish-depth", "--lcm-url", url}).err, "");
   expect_kept(log, {"run", "--source", "lcmlog:" + log, "--model", box_model(), "--lcm-url", url},
               {"--source", "--lcm-url"});
+  write_file(at("p.toml"),
+             "source = \"lcmlog:" + log + "\"\nmodel = \"box.model\"\n[lcm]\nurl = \"" + url + "\"\n");
+  for (const char* command : {"run", "check"})
+    expect_kept(log, {command, "--config", at("p.toml")},
+                {"'source' in the config", "'lcm.url' in the config"});
   expect_kept(log, run_with({"--source", "lcmlog:" + log, "--model", at("box.model"), "--stats", log}),
               {"--source", "--stats"});
   for (const char* option : {"--tum", "--mcap", "--ply", "--csv"})
