@@ -8,6 +8,12 @@ namespace {
 bool within(double x, double low, double high) {
   return x >= low && x <= high;
 }  // false for NaN
+
+/// Of all pixels of a row or column, by its first and last.
+bool slopes_within(int count, double centre, double focal) {
+  return within((0 - centre) / focal, -kMostSlope, kMostSlope) &&
+         within((count - 1 - centre) / focal, -kMostSlope, kMostSlope);
+}
 }  // namespace
 
 const char* intrinsics_fault(const Intrinsics& camera) noexcept {
@@ -21,6 +27,9 @@ const char* intrinsics_fault(const Intrinsics& camera) noexcept {
     return "cx and cy must be -4000 to 8000 pixels";
   if (!within(camera.depth_scale, 10, 1000000))
     return "depth_scale must be 10 to 1000000 raw units per metre";
+  if (!slopes_within(camera.width, camera.cx, camera.fx) ||
+      !slopes_within(camera.height, camera.cy, camera.fy))
+    return "(u - cx) / fx and (v - cy) / fy must be -2 to 2 for every pixel (63 degrees from the axis)";
   return nullptr;
 }
 

@@ -12,8 +12,12 @@ struct Intrinsics {
   double depth_scale = 1000;  ///< raw units per metre; 1000 for millimetres
 };
 
+/// How far aside a pixel may look, by how far ahead: 63 degrees from the axis. Rays and projected points fit
+/// 16 and 32 bits up to it.
+inline constexpr double kMostSlope = 2;
+
 /// What is wrong with the intrinsics in words, or null: sizes within limits, focal lengths and depth scale
-/// positive and finite, principal point finite.
+/// positive and finite, principal point finite, no pixel beyond kMostSlope.
 [[nodiscard]] const char* intrinsics_fault(const Intrinsics& camera) noexcept;
 
 }  // namespace pliant

@@ -12,6 +12,7 @@ namespace pliant {
 
 namespace {
 
+/// |slope| <= kMostSlope, the ends but for their last bit.
 std::int16_t ray_q14(double slope) noexcept {
   return static_cast<std::int16_t>(std::clamp(std::floor(slope * 16384.0 + 0.5), -32767.0, 32767.0));
 }

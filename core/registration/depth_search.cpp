@@ -172,7 +172,7 @@ double draw_cloud(RegistrationState& s, std::span<const Point3f> scene, DepthFra
     wide = std::max(wide, std::fabs(q.x() / q.z()));
     high = std::max(high, std::fabs(q.y() / q.z()));
   }
-  if (!(wide > 1e-3 && wide < 3 && high > 1e-3 && high < 3)) return 0;
+  if (!(wide > 1e-3 && wide < kMostSlope && high > 1e-3 && high < kMostSlope)) return 0;
   const double pixels = std::min<double>(0.5 * static_cast<double>(count), 1920.0 * 1200.0);
   const double focal = std::sqrt(pixels / (4 * wide * high));
   camera.width =

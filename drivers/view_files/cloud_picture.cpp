@@ -63,7 +63,8 @@ Binned bin(const ViewCloud& cloud, const std::vector<std::int32_t>& pixel_of, st
 }  // namespace
 
 Intrinsics camera_for(std::span<const ViewCloud> clouds) {
-  constexpr double kWidest = 2;  // tan 63°: a pinhole camera's picture tears at its rim beyond it
+  // tan 63°: a pinhole camera's picture tears at its rim beyond it. A little less, for rounding.
+  constexpr double kWidest = 0.995 * kMostSlope;
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9, spacing = 1e9;
   for (const ViewCloud& cloud : clouds) {
     std::vector<Vector3> seen;
@@ -86,12 +87,18 @@ Intrinsics camera_for(std::span<const ViewCloud> clouds) {
   const auto pixels = [&](double from, double to, int most) {
     return std::clamp(static_cast<int>(std::ceil((to - from) * focal)) + 2 * kBorder + 1, kFewest, most);
   };
+  // Nor does what is left free around the points reach beyond it.
+  const double rim = kWidest * focal;
+  const auto middle = [&](double from, double to, int count) {
+    return std::clamp(0.5 * (count - 1) - 0.5 * (from + to) * focal, count - 1 - rim, rim);
+  };
+  const int most = static_cast<int>(std::min<double>(2 * rim, kMostColumns)) + 1;
   Intrinsics camera;
-  camera.width = pixels(left, right, kMostColumns);
-  camera.height = pixels(top, bottom, kMostRows);
+  camera.width = std::min(pixels(left, right, kMostColumns), most);
+  camera.height = std::min(pixels(top, bottom, kMostRows), most);
   camera.fx = camera.fy = focal;
-  camera.cx = 0.5 * (camera.width - 1) - 0.5 * (left + right) * focal;
-  camera.cy = 0.5 * (camera.height - 1) - 0.5 * (top + bottom) * focal;
+  camera.cx = middle(left, right, camera.width);
+  camera.cy = middle(top, bottom, camera.height);
   camera.depth_scale = kUnits;
   return camera;
 }

@@ -123,15 +123,16 @@ TEST(Surface, ExtremeReadingsAndCamerasStayInBounds) {
   // what the sanitizers watch: wild depth under the widest and the longest lens that is let in
   std::mt19937 random(8);
   for (const double focal : {10.0, 100.0, 10000.0}) {
-    const Intrinsics camera{64, 48, focal, focal, focal > 1000 ? 8000.0 : -4000.0, 24, 8000};
+    const double aside = focal > 1000 ? 8000 : 31 - kMostSlope * focal;
+    const Intrinsics camera{32, 24, focal, focal, aside, 12, 8000};
     ASSERT_EQ(intrinsics_fault(camera), nullptr);
     Observed o(camera, Kernels::automatic, {0.05, 0.1, 0.05, 8.0});
-    std::vector<std::uint16_t> raw(64 * 48);
+    std::vector<std::uint16_t> raw(32 * 24);
     for (std::uint16_t& x : raw)
       x = static_cast<std::uint16_t>(random() % 2 == 0 ? 64000 - random() % 9000 : random());
-    o.surface.build({raw.data(), 64, 48, 64, 0, 0}, {0, 0, 64, 48});
-    for (int v = 0; v < 48; ++v)
-      for (int u = 0; u < 64; ++u)
+    o.surface.build({raw.data(), 32, 24, 32, 0, 0}, {0, 0, 32, 24});
+    for (int v = 0; v < 24; ++v)
+      for (int u = 0; u < 32; ++u)
         for (int step = 1; step <= Surface::kMostStep; ++step) {
           Normal16 n;
           if (!o.surface.normal(u, v, step, n)) continue;
