@@ -1,6 +1,7 @@
 // The model in the integers that the frame path works on.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -77,13 +78,16 @@ class Projector {
     v = static_cast<std::int32_t>((static_cast<std::int64_t>(p.y) * fy_ * 32) / p.z) + cy_ * 32;
     return true;
   }
-  /// Pixels that `length` (1/16 mm) spans at depth z (1/16 mm), rounded up.
+  /// Pixels that `length` (1/16 mm) spans at depth z (1/16 mm), rounded up. Not before the camera counts as
+  /// at its nearest, z = 1: what is tracked may be held to lie there. Overflow bound: |length| <= 2^17, since
+  /// focal lengths are at most 10000 pixels.
   [[nodiscard]] int pixels(std::int32_t length, std::int32_t z) const noexcept {
-    return static_cast<int>(static_cast<std::int64_t>(length) * fx_ / (8 * static_cast<std::int64_t>(z)) + 1);
+    return static_cast<int>(
+        static_cast<std::int64_t>(length) * fx_ / (8 * static_cast<std::int64_t>(std::max(z, 1))) + 1);
   }
-  /// The length (1/16 mm) that `steps` 1/256 pixels span at depth z (1/16 mm).
+  /// The length (1/16 mm) that `steps` 1/256 pixels span at depth z (1/16 mm), likewise.
   [[nodiscard]] std::int64_t length(std::int32_t steps, std::int32_t z) const noexcept {
-    return static_cast<std::int64_t>(steps) * z / (static_cast<std::int64_t>(fx_) * 32);
+    return static_cast<std::int64_t>(steps) * std::max(z, 1) / (static_cast<std::int64_t>(fx_) * 32);
   }
 
  private:

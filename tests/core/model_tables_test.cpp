@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "tests/core/synthetic.hpp"
@@ -124,6 +125,18 @@ TEST(Projector, TellsHowManyPixelsALengthSpans) {
   EXPECT_EQ(projector.pixels(0, 16000), 1);
   projector.start({640, 480, 6000, 6000, 320, 240, 1000});
   EXPECT_EQ(projector.pixels(160, 16000), 61);
+}
+
+TEST(Projector, SpansLengthsAtEveryDepth) {
+  Projector projector;
+  projector.start({640, 480, 10000, 10000, 320, 240, 1000});
+  constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
+  for (const std::int32_t z : {1, 0, -1, -16000, kLowest}) {
+    EXPECT_EQ(projector.pixels(160, z), 1600001) << z;
+    EXPECT_EQ(projector.pixels(1 << 17, z), (1 << 17) * 10000 + 1) << z;
+    EXPECT_EQ(projector.length(256, z), 0) << z;
+  }
+  EXPECT_EQ(projector.length(256, 160000), 16);
 }
 
 }  // namespace

@@ -206,6 +206,16 @@ TEST_F(TrackerTest, SurvivesWildPictures) {
   }
 }
 
+TEST_F(TrackerTest, SurvivesAPoseInTheCamerasPlane) {
+  for (const double z : {0.0, -0.7}) {
+    start();
+    RigidTransform pose;
+    pose.translation = Vector3(0, 0, z) - model().centre();
+    tracker_.start_from(pose);
+    for (int frame = 0; frame < 4; ++frame) EXPECT_NE(see(frame).state, TrackState::tracking);
+  }
+}
+
 TEST_F(TrackerTest, ForgetsWhenReset) {
   start();
   tracker_.start_from(pose(0));
