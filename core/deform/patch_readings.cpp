@@ -31,9 +31,9 @@ void add_contour(const PatchLook& look, const IntPoint& at, const IntPoint& n, c
 
 /// The integer kernel: every point of a patch that faces the camera, beside the reading of its
 /// pixel, or that lies on the outline, beside that, into the moments of its patch about the patch's centre.
-/// Formats are those of PlaneMoments. Overflow bounds: gates <= 8191, so that a difference squared stays
-/// below 2^26 and three below 2^28; arms are at most a model's extent, 2^16, times Q14 normals: below 2^31
-/// for the difference of two.
+/// Formats are those of PlaneMoments. Overflow bounds: gates <= kFarthestReading, so that a difference
+/// squared stays below 2^26 and three below 2^28; arms are at most a model's extent, 2^16, times Q14 normals:
+/// below 2^31 for the difference of two.
 [[gnu::noinline]] void gather(const PatchLook& look, const PointState& points, std::size_t p,
                               PatchWarp& warp) noexcept {
   const IntPoint centre = warp.centre[p];

@@ -2,6 +2,8 @@
 // small motions.
 #pragma once
 
+#include <algorithm>
+
 #include "core/camera/surface.hpp"
 #include "core/deform/patch_warp.hpp"
 
@@ -9,10 +11,17 @@ namespace pliant {
 
 using ChosenPatches = std::array<bool, kMaxPatches>;
 
-/// How far a point's reading may lie from it, 1/16 mm, at most 8191.
+/// How far a point's reading may lie from it, 1/16 mm, at most kFarthestReading.
 struct ReadingGates {
   std::int32_t inward = 0, outward = 0;
   PixelSpan spacing;
+
+  /// The nearer the patches are, the less a reading far off has to do with them: a quarter less, but not
+  /// below `least`.
+  void narrow(std::int32_t least) noexcept {
+    inward = std::min(std::max(inward * 3 / 4, least), kFarthestReading);
+    outward = std::min(std::max(outward * 3 / 4, least), kFarthestReading);
+  }
 };
 
 /// What the readings are looked up with.

@@ -251,7 +251,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   const Material material{noise, strain_limit(settings.material), bend_limit(settings.material)};
   PatchLook look{model, patches, surface, projector, {}, 1};
   ReadingGates& gates = look.gates;
-  gates = {std::min(settings.inward, 8191), std::min(settings.outward, 8191),
+  gates = {std::min(settings.inward, kFarthestReading), std::min(settings.outward, kFarthestReading),
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
   const std::array<RigidTransform, kMaxPatches> before = warp.pose;
   const ChosenPatches astray = return_home(look, regions, points, noise, warp);
@@ -260,9 +260,7 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   for (int round = 0; round < settings.rounds; ++round) {
     look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
     if (!balance(look, regions, points, active, material, limit, settings.iterations, warp)) break;
-    // the nearer the patches are, the less a reading far off has to do with them
-    gates.inward = std::max(gates.inward * 3 / 4, 2 * tolerance.deformed(z));
-    gates.outward = std::max(gates.outward * 3 / 4, 2 * tolerance.deformed(z));
+    gates.narrow(2 * tolerance.deformed(z));
   }
   for (std::size_t p = 0; p < patches.count; ++p)
     if (moving[p])

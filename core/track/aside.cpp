@@ -1,5 +1,6 @@
 #include "core/track/aside.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "core/fixed/integer_root.hpp"
@@ -10,7 +11,8 @@ namespace pliant {
 bool find_aside(const Surface& surface, const AsideReach& reach, int u, int v, const IntPoint& at,
                 const IntPoint& n, Aside& found) noexcept {
   if (surface.depth(u, v) == 0 && in_shadow(surface, u, v, at.z, reach.outward, reach.step)) return false;
-  std::int64_t best = static_cast<std::int64_t>(reach.inward) * reach.inward;
+  const std::int32_t farthest = std::min(reach.inward, kFarthestReading);
+  std::int64_t best = static_cast<std::int64_t>(farthest) * farthest;
   IntPoint nearest;
   bool any = false;
   constexpr std::array<std::array<int, 2>, 4> kDirections = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};

@@ -1,7 +1,7 @@
 // Where the camera sees through a point of the object, the object's edge has moved aside.
 #pragma once
 
-#include "core/camera/surface.hpp"
+#include "core/track/track_state.hpp"
 
 namespace pliant {
 
@@ -25,8 +25,8 @@ struct Aside {
 
 /// The nearest reading along the four directions of the picture, beside pixel (u, v) where the camera sees
 /// through the point `at` with normal `n`, whose surface faces as the point does. False when there is none,
-/// or when the pixel lies in the shadow of something nearer and may hide the point. Overflow bound: reach <=
-/// 8191, so that a distance squared stays below 2^28.
+/// or when the pixel lies in the shadow of something nearer and may hide the point. What lies farther than
+/// kFarthestReading is not taken, whatever the reach, so that a distance squared stays below 2^26.
 [[nodiscard]] bool find_aside(const Surface& surface, const AsideReach& reach, int u, int v,
                               const IntPoint& at, const IntPoint& n, Aside& found) noexcept;
 

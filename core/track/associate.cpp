@@ -16,7 +16,7 @@ struct Plan {
   RegionPoses poses;
   std::array<std::size_t, limits::kMaxRegions> sizes{};  // of the sampling, by region
   std::size_t size = 0;
-  std::int32_t gate = 0;  // 1/16 mm, at most 8191
+  std::int32_t gate = 0;  // 1/16 mm, at most kFarthestReading
   PixelSpan spacing;
 
   [[nodiscard]] AsideReach aside_at(const Projector& projector, std::int32_t z) const noexcept {
@@ -88,7 +88,7 @@ void associate(const ModelTables& model, const Surface& surface, const Projector
   for (const std::int8_t home : points.home) ++plan.sizes[static_cast<std::size_t>(home)];
   for (std::size_t& size : plan.sizes)
     size = size <= kEnoughOfRegion ? plan.size : std::min(plan.size, model.size * kEnoughOfRegion / size);
-  plan.gate = std::min(settings.gate, 8191);
+  plan.gate = std::min(settings.gate, kFarthestReading);
   plan.spacing = surface.pixel_span(model.spacing / kUnitsPerMetre);
   points.correspondence_count = associate_points(model, surface, projector, plan, points);
 }

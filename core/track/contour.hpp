@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// How far the picture is searched for the outline.
+/// How far the picture is searched for the outline; below 2^15, so that the steps fit 32 bits.
 struct ContourReach {
   std::int32_t along = 0;   ///< to each side of a point, along its normal, 1/16 mm
   std::int32_t behind = 0;  ///< readings farther behind a point than this are not the object's, 1/16 mm

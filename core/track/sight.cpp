@@ -11,7 +11,7 @@ namespace {
 
 /// Where the surface is steep, a reading within the limit of a point lies farther off in depth.
 bool is_near(std::uint16_t z8, const IntPoint& point, std::int32_t limit) noexcept {
-  return z8 != 0 && std::abs(2 * z8 - point.z) <= 4 * limit;
+  return z8 != 0 && std::abs(2 * z8 - point.z) <= std::min(4 * limit, kFarthestReading);
 }
 
 }  // namespace
@@ -47,15 +47,17 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
   if (centre == 0) return out;
   const IntPoint q = surface_.vertex(u, v, centre);
   out.match = v * surface_.width() + u;
-  const std::int32_t gap = std::min(std::abs(q.z - point.z), 8191);
+  const std::int32_t gap = std::min(std::abs(q.z - point.z), kFarthestReading);
   out.sight = q.z > point.z ? Sight::in_front : Sight::behind;
-  out.residual = gap == 8191 ? (q.z > point.z ? -8191 : 8191) : plane_distance(q, point, normal) >> 4;
+  out.residual =
+      gap == kFarthestReading ? (q.z > point.z ? -gap : gap) : plane_distance(q, point, normal) >> 4;
   return out;
 }
 
 bool Sighting::look_beside(std::int32_t reach, Look& look) const noexcept {
   int u = 0, v = 0;
   if (!look.facing || !projector_.project(look.point, u, v)) return false;
+  reach = std::min(reach, kFarthestReading);
   const int step = std::max(1, projector_.pixels(reach, look.point.z) / kLooksAside);
   Aside aside;
   if (!find_aside(surface_, {reach, reach, step, spacing_}, u, v, look.point, look.normal, aside))

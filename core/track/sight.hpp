@@ -39,8 +39,9 @@ class Sighting {
   [[nodiscard]] Look look(const IntPoint& point, const IntPoint& normal) const noexcept;
 
   /// For a look at a point that faces the camera and has no reading, as beside an outline: the nearest
-  /// reading within `reach` (1/16 mm) beside it that faces as the point does becomes its match; `normal` and
-  /// `residual` tell which way and how far it lies. False, and nothing changes, where there is none.
+  /// reading within `reach` (1/16 mm, kFarthestReading at most) beside it that faces as the point does
+  /// becomes its match; `normal` and `residual` tell which way and how far it lies. False, and nothing
+  /// changes, where there is none.
   [[nodiscard]] bool look_beside(std::int32_t reach, Look& look) const noexcept;
 
   /// Does the camera see through the point under `pose`, whichever way it faces? Then it cannot be there.

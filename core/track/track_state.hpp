@@ -1,6 +1,7 @@
 // What the tracker keeps from frame to frame, and the buffers of a frame.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -109,15 +110,18 @@ inline constexpr std::int32_t kMisfitFrames = 64;
 /// First frames after the object was taken up, whose plain mean the misfit starts from.
 inline constexpr std::int32_t kMisfitFirstFrames = 4;
 
+/// No reading farther from a point than this, along each axis of the camera or off its surface, says anything
+/// of it, 1/16 mm: 512 mm. What integer kernels rest their overflow bounds on.
+inline constexpr std::int32_t kFarthestReading = 8191;
+
 /// Lengths that a frame's decisions rest on, from the model's spacing and the sensor's noise.
 struct Tolerance {
   const Surface* surface = nullptr;
   std::int32_t spacing = 0;  ///< 1/16 mm
   /// How far off its region's surface a point is deformed: the larger of one spacing and 4 σ of the depth
-  /// there.
+  /// there, at most kFarthestReading.
   [[nodiscard]] std::int32_t deformed(std::int32_t z16) const noexcept {
-    const std::int32_t four_sigma = 4 * surface->sigma(z16);
-    return four_sigma > spacing ? four_sigma : spacing;
+    return std::min(std::max(4 * surface->sigma(z16), spacing), kFarthestReading);
   }
 };
 
