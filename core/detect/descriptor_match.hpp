@@ -13,8 +13,8 @@
 namespace pliant {
 
 /// Dot products of a query with candidates[which[0 … count)], int16.
-/// Formats: components int8 >= 0, norms <= 136.4 (127 and the rounding of 352 components), so that every dot
-/// product and every partial sum of one is <= 18,605 and fits 16 bits; pairs of products stay <= 32,258. All
+/// Formats: components int8 >= 0, norms squared <= Descriptor::kMostSquare, so that every dot product and
+/// every partial sum of one is, too (Cauchy-Schwarz), and fits 16 bits; pairs of products stay <= 32,258. All
 /// bodies give the same bits.
 using DotKernel = void (*)(const Descriptor& query, const Descriptor* candidates, const std::uint32_t* which,
                            std::size_t count, std::int16_t* dots) noexcept;

@@ -24,6 +24,17 @@ bool section(std::span<const std::byte> image, std::uint64_t offset, std::size_t
   return true;
 }
 
+/// The centre lies in the bounding box, the sphere is no larger than one around it, and points lie no farther
+/// apart than the sphere is wide: what is converted to integers is bounded by the box alone.
+bool sizes_fit(const ModelHeader& h) {
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (!(h.centre[i] >= h.lowest[i] && h.centre[i] <= h.highest[i])) return false;
+    square += (h.highest[i] - h.lowest[i]) * (h.highest[i] - h.lowest[i]);
+  }
+  return finite(square) && h.radius * h.radius <= square && h.spacing <= 2 * h.radius;
+}
+
 bool header_is_sane(const ModelHeader& h) {
   bool good = finite(h.spacing) && h.spacing > 0 && finite(h.radius) && h.radius > 0 &&
               finite(h.support_radius) && h.support_radius > 0 && h.characterisability >= 0 &&
@@ -32,7 +43,8 @@ bool header_is_sane(const ModelHeader& h) {
   for (int i = 0; i < 3; ++i)
     good = good && finite(h.centre[i]) && finite(h.lowest[i]) && finite(h.highest[i]) &&
            h.lowest[i] <= h.highest[i];
-  return good && h.ambiguity <= static_cast<std::uint32_t>(ModelHeader::Ambiguity::featureless);
+  return good && sizes_fit(h) &&
+         h.ambiguity <= static_cast<std::uint32_t>(ModelHeader::Ambiguity::featureless);
 }
 
 bool contents_are_sane(const ModelView& view, std::span<const std::uint16_t> neighbours) {
@@ -49,9 +61,14 @@ bool contents_are_sane(const ModelView& view, std::span<const std::uint16_t> nei
   }
   for (const std::uint16_t n : neighbours)
     if (n != kNoNeighbour && n >= h.point_count) return false;
-  for (const Descriptor& d : view.descriptors())
-    for (const std::int8_t bin : d.bins)
+  for (const Descriptor& d : view.descriptors()) {
+    std::int32_t square = 0;  // below 352 · 2^14
+    for (const std::int8_t bin : d.bins) {
       if (bin < 0) return false;
+      square += bin * bin;
+    }
+    if (square > Descriptor::kMostSquare) return false;
+  }
   for (const LocalFrame& f : view.frames())
     for (const std::int16_t component : f.axes)
       if (component < -16400 || component > 16400) return false;
@@ -114,7 +131,8 @@ ModelFault ModelView::open(std::span<const std::byte> image, ModelView& view) no
       header->patch_count > limits::kMaxPatches || header->surface_link_count > limits::kMaxBorders ||
       header->body_link_count > limits::kMaxBodyLinks)
     return ModelFault::over_limit;
-  if (header->point_count == 0 || header->keypoint_count > header->point_count || header->patch_count == 0 ||
+  if (header->point_count == 0 || header->keypoint_count == 0 ||
+      header->keypoint_count > header->point_count || header->patch_count == 0 ||
       header->patch_count > header->point_count || !header_is_sane(*header))
     return ModelFault::corrupt;
 

@@ -21,8 +21,11 @@ struct Normal16 {
   std::int16_t x = 0, y = 0, z = 0, pad = 0;
 };
 
-/// Eight-bit SHOT descriptor, each component >= 0, of Euclidean norm ~ 127·(1 ± quantisation).
+/// Eight-bit SHOT descriptor, each component >= 0, of Euclidean norm <= 136.4: 127 and the rounding of 352
+/// components.
 struct Descriptor {
+  static constexpr std::int32_t kMostSquare = 18605;  ///< of its norm
+
   std::array<std::int8_t, kDescriptorSize> bins;
 };
 
@@ -117,9 +120,9 @@ enum class ModelFault : std::uint8_t {
 class ModelView {
  public:
   ModelView() noexcept = default;
-  /// Checks `image` (8-byte aligned) in full: header, checksum, every offset and index, finite numbers, unit
-  /// normals, the range of descriptors and frames, the spring network. On success `view` looks into `image`,
-  /// which must outlive it.
+  /// Checks `image` (8-byte aligned) in full: header, checksum, every offset and index, finite numbers,
+  /// lengths that fit the bounding box, unit normals, the range of descriptors and frames, the spring
+  /// network. On success `view` looks into `image`, which must outlive it.
   [[nodiscard]] static ModelFault open(std::span<const std::byte> image, ModelView& view) noexcept;
 
   [[nodiscard]] bool empty() const noexcept { return header_ == nullptr; }

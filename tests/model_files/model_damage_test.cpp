@@ -97,6 +97,7 @@ TEST(ModelDamage, CountsOverTheLimitsWithTheRightChecksum) {
   EXPECT_EQ(with_header([](ModelHeader& h) { h.keypoint_count = limits::kMaxModelKeypoints; }),
             ModelFault::corrupt);
   EXPECT_EQ(with_header([](ModelHeader& h) { h.point_count = 0; }), ModelFault::corrupt);
+  EXPECT_EQ(with_header([](ModelHeader& h) { h.keypoint_count = 0; }), ModelFault::corrupt);
 
   const std::pair<std::uint32_t ModelHeader::*, std::size_t> network[] = {
       {&ModelHeader::patch_count, limits::kMaxPatches},
@@ -157,6 +158,41 @@ TEST(ModelDamage, NumbersThatMakeNoSense) {
             ModelFault::corrupt);
   EXPECT_EQ(with_item<LocalFrame>(&ModelHeader::frames_offset, [](LocalFrame& f) { f.axes[8] = 32767; }),
             ModelFault::corrupt);
+}
+
+TEST(ModelDamage, SizesThatDoNotFitTheBox) {
+  ModelView good;
+  ASSERT_EQ(ModelView::open(good_image(), good), ModelFault::none);
+  const double radius = good.radius();
+  for (int i = 0; i < 3; ++i) {
+    for (const double off : {-1e-9, -1.0, -1e300})
+      EXPECT_EQ(with_header([&](ModelHeader& h) { h.centre[i] = h.lowest[i] + off; }), ModelFault::corrupt);
+    for (const double off : {1e-9, 1.0, 1e300})
+      EXPECT_EQ(with_header([&](ModelHeader& h) { h.centre[i] = h.highest[i] + off; }), ModelFault::corrupt);
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.lowest[i] = -1e300, h.highest[i] = 1e300; }),
+              ModelFault::corrupt);
+  }
+  for (const double wrong : {2.001 * radius, 1.0, 1e10, 1e300})
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.spacing = wrong; }), ModelFault::corrupt) << wrong;
+  for (const double wrong : {4 * radius, 10.0, 1e300})  // the box's diagonal is up to √12 of the radius
+    EXPECT_EQ(with_header([&](ModelHeader& h) { h.spacing = h.radius = wrong; }), ModelFault::corrupt)
+        << wrong;
+}
+
+TEST(ModelDamage, DescriptorsLongerThanTheMatcherTakes) {
+  const auto descriptor = [](int bins, int value, int more) {
+    return with_item<Descriptor>(&ModelHeader::descriptors_offset, [&](Descriptor& d) {
+      d.bins.fill(0);
+      for (int i = 0; i < bins; ++i) d.bins[static_cast<std::size_t>(i)] = static_cast<std::int8_t>(value);
+      d.bins[351] = static_cast<std::int8_t>(more);
+    });
+  };
+  EXPECT_EQ(descriptor(0, 0, 0), ModelFault::none);        // of a keypoint without a frame
+  EXPECT_EQ(descriptor(1, 127, 49), ModelFault::none);     // 18,530
+  EXPECT_EQ(descriptor(1, 127, 50), ModelFault::corrupt);  // 18,629
+  EXPECT_EQ(descriptor(351, 7, 37), ModelFault::none);     // 18,568
+  EXPECT_EQ(descriptor(351, 7, 38), ModelFault::corrupt);  // 18,643
+  EXPECT_EQ(descriptor(351, 127, 127), ModelFault::corrupt);
 }
 
 TEST(ModelDamage, PatchesThatAreNotThereOrOtherThanTheySay) {
