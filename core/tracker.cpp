@@ -109,6 +109,7 @@ const char* Tracker::start(const ModelView& model, const Intrinsics& camera, con
   state_ = nullptr;
   if (model.empty()) return "there is no model";
   if (const char* fault = intrinsics_fault(camera)) return fault;
+  if (const char* fault = sensor_fault(sensor)) return fault;
   if (model.header().highest[0] - model.header().lowest[0] > 2 * limits::kMaxModelHalfExtent ||
       model.header().highest[1] - model.header().lowest[1] > 2 * limits::kMaxModelHalfExtent ||
       model.header().highest[2] - model.header().lowest[2] > 2 * limits::kMaxModelHalfExtent)
@@ -188,7 +189,7 @@ void Tracker::observe(const StageObserver& observer) noexcept {
 }
 
 void Tracker::set_work_level(double level) noexcept {
-  state_->work_level = level < 0 ? 0 : level > 1 ? 1 : level;
+  state_->work_level = !(level > 0) ? 0 : level > 1 ? 1 : level;
 }
 
 void Tracker::start_from(const RigidTransform& pose) noexcept {

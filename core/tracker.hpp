@@ -36,6 +36,7 @@ class Tracker {
   void observe(const StageObserver& observer) noexcept;
 
   /// How much work a frame may cost: 1 (all) down to 0 (least). Points and iterations shrink by rule.
+  /// What lies beyond counts as the end that it lies beyond, what is not a number as 0.
   void set_work_level(double level) noexcept;
 
   /// The next frame looks for the object near `pose` (camera <- model) instead of searching for it.

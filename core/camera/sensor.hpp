@@ -7,14 +7,26 @@ namespace pliant {
 /// Defaults: structured light of the PrimeSense family (Nguyen, Izadi, Lovell: Modeling Kinect Sensor Noise
 /// for Improved 3D Reconstruction and Tracking, 3DIMPVT 2012, eq. 3).
 struct SensorDescription {
-  double noise_floor = 0.0012;   ///< metres [0.0001, 0.05]
-  double noise_growth = 0.0019;  ///< 1/metres [0, 0.1]
-  double near_limit = 0.3;       ///< metres [0.05, 4]; nearer readings are not used
-  double far_limit = 4.0;        ///< metres [0.2, 8]; farther readings are not used
+  /// What a number may be.
+  struct Range {
+    double low, high;
+    /// False for NaN.
+    [[nodiscard]] constexpr bool holds(double x) const noexcept { return x >= low && x <= high; }
+  };
+  static constexpr Range kNoiseFloor = {0.0001, 0.05}, kNoiseGrowth = {0, 0.1}, kNearLimit = {0.05, 4},
+                         kFarLimit = {0.2, 8};
+
+  double noise_floor = 0.0012;   ///< metres
+  double noise_growth = 0.0019;  ///< 1/metres
+  double near_limit = 0.3;       ///< metres; nearer readings are not used
+  double far_limit = 4.0;        ///< metres; farther readings are not used
 
   [[nodiscard]] double sigma(double z) const noexcept {
     return noise_floor + noise_growth * (z - 0.4) * (z - 0.4);
   }
 };
+
+/// What is wrong with the description in words, or null: every number within its range, near below far.
+[[nodiscard]] const char* sensor_fault(const SensorDescription& sensor) noexcept;
 
 }  // namespace pliant

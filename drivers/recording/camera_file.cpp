@@ -92,10 +92,14 @@ Result<CameraFile> parse_camera(std::string_view text, std::string_view name) {
                                         {"cx", &c.cx, -4000, 8000},
                                         {"cy", &c.cy, -4000, 8000},
                                         {"depth_scale", &c.depth_scale, 10, 1000000}}};
-  const std::array<Key, 4> sensor_keys{{{"noise_floor", &s.noise_floor, 0.0001, 0.05},
-                                        {"noise_growth", &s.noise_growth, 0, 0.1},
-                                        {"near_limit", &s.near_limit, 0.05, 4},
-                                        {"far_limit", &s.far_limit, 0.2, 8}}};
+  const auto of_sensor = [](std::string_view key, double& value, const SensorDescription::Range& range) {
+    return Key{key, &value, range.low, range.high};
+  };
+  const std::array<Key, 4> sensor_keys = {
+      of_sensor("noise_floor", s.noise_floor, SensorDescription::kNoiseFloor),
+      of_sensor("noise_growth", s.noise_growth, SensorDescription::kNoiseGrowth),
+      of_sensor("near_limit", s.near_limit, SensorDescription::kNearLimit),
+      of_sensor("far_limit", s.far_limit, SensorDescription::kFarLimit)};
   const toml::table& root = *parsed;
   if (Outcome taken = reader.take(root, camera_keys, "sensor"); !taken) return taken.error();
   if (const toml::table* sensor = root["sensor"].as_table())
@@ -104,8 +108,7 @@ Result<CameraFile> parse_camera(std::string_view text, std::string_view name) {
     if (std::isnan(*key.value)) return reader.of_file(fmt::format("'{}' is missing", key.name));
   if (width != std::floor(width) || height != std::floor(height))
     return reader.of_file("width and height must be whole numbers");
-  if (s.near_limit >= s.far_limit)
-    return reader.of_file("sensor.near_limit must be less than sensor.far_limit");
+  if (const char* fault = sensor_fault(s)) return reader.of_file(fmt::format("sensor: {}", fault));
   c.width = static_cast<int>(width);
   c.height = static_cast<int>(height);
   if (const char* fault = intrinsics_fault(c)) return reader.of_file(fault);

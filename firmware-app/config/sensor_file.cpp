@@ -14,6 +14,10 @@ namespace {
 
 /// Every key of a sensor description.
 std::vector<Setting> sensor_settings(SensorFile& s) {
+  const auto of_noise = [](const char* key, double& value, const SensorDescription::Range& range,
+                           const char* unit, const char* what) {
+    return Setting{"noise", key, &value, range.low, range.high, unit, what};
+  };
   return {
       {"", "name", &s.name, 0, 200, "", "the sensor's name"},
       {"mode", "width", &s.mode.width, limits::kMinFrameWidth, limits::kMaxFrameWidth, "pixels",
@@ -26,10 +30,11 @@ std::vector<Setting> sensor_settings(SensorFile& s) {
       {"camera", "cx", &s.camera.cx, -4000, 8000, "pixels", "principal point across"},
       {"camera", "cy", &s.camera.cy, -4000, 8000, "pixels", "principal point down"},
       {"camera", "depth_scale", &s.camera.depth_scale, 10, 1000000, "raw units per metre", "of a reading"},
-      {"noise", "noise_floor", &s.noise.noise_floor, 0.0001, 0.05, "m", "deviation at 0.4 m"},
-      {"noise", "noise_growth", &s.noise.noise_growth, 0, 0.1, "1/m", "its growth with (depth - 0.4 m)^2"},
-      {"noise", "near_limit", &s.noise.near_limit, 0.05, 4, "m", "nearest reading used"},
-      {"noise", "far_limit", &s.noise.far_limit, 0.2, limits::kMaxDepth, "m", "farthest reading used"},
+      of_noise("noise_floor", s.noise.noise_floor, SensorDescription::kNoiseFloor, "m", "deviation at 0.4 m"),
+      of_noise("noise_growth", s.noise.noise_growth, SensorDescription::kNoiseGrowth, "1/m",
+               "its growth with (depth - 0.4 m)^2"),
+      of_noise("near_limit", s.noise.near_limit, SensorDescription::kNearLimit, "m", "nearest reading used"),
+      of_noise("far_limit", s.noise.far_limit, SensorDescription::kFarLimit, "m", "farthest reading used"),
   };
 }
 
@@ -39,10 +44,8 @@ Outcome parse_sensor(std::string_view text, std::string_view name, SensorFile& s
   SensorFile candidate = sensor;
   const std::vector<Setting> settings = sensor_settings(candidate);
   if (Outcome parsed = parse_settings(text, name, settings); !parsed) return parsed;
-  if (candidate.noise.near_limit >= candidate.noise.far_limit)
-    return Error{ErrorKind::bad_input,
-                 fmt::format("{}: noise.near_limit must be below noise.far_limit ({:g} and {:g} m)", name,
-                             candidate.noise.near_limit, candidate.noise.far_limit)};
+  if (const char* fault = sensor_fault(candidate.noise); fault != nullptr)
+    return Error{ErrorKind::bad_input, fmt::format("{}: noise: {}", name, fault)};
   if (const char* fault = intrinsics_fault(candidate.intrinsics()); fault != nullptr)
     return Error{ErrorKind::bad_input, fmt::format("{}: camera: {}", name, fault)};
   sensor = candidate;

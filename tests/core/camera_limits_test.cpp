@@ -7,7 +7,7 @@
 
 #include "core/camera/intrinsics.hpp"
 #include "core/track/contour.hpp"
-#include "core/track/model_tables.hpp"
+#include "core/track/track_state.hpp"
 #include "tests/core/observed_surface.hpp"
 
 namespace pliant {
@@ -69,6 +69,36 @@ TEST(CameraLimits, WhereAReadingLiesItFallsAgain) {
   EXPECT_GE(cameras, 12);
 }
 
+TEST(SensorLimits, RefusesWhatIsOutOfItsRange) {
+  using D = SensorDescription;
+  EXPECT_EQ(sensor_fault({}), nullptr);
+  EXPECT_EQ(sensor_fault({0.0001, 0, 0.05, 0.2}), nullptr);
+  EXPECT_EQ(sensor_fault({0.05, 0.1, 4, 8}), nullptr);
+  const double nan = std::numeric_limits<double>::quiet_NaN(),
+               infinite = std::numeric_limits<double>::infinity();
+  struct Number {
+    double D::*member;
+    D::Range range;
+    const char* name;
+  };
+  for (const Number& number : {Number{&D::noise_floor, D::kNoiseFloor, "noise_floor"},
+                               Number{&D::noise_growth, D::kNoiseGrowth, "noise_growth"},
+                               Number{&D::near_limit, D::kNearLimit, "near_limit"},
+                               Number{&D::far_limit, D::kFarLimit, "far_limit"}})
+    for (const double wrong : {nan, infinite, -infinite, number.range.low - 1e-6, number.range.high + 1e-6}) {
+      D sensor;
+      sensor.*number.member = wrong;
+      const char* fault = sensor_fault(sensor);
+      ASSERT_NE(fault, nullptr) << number.name << " " << wrong;
+      EXPECT_EQ(std::strstr(fault, number.name), fault) << fault;
+    }
+  for (const double far : {2.0, 1.9}) {
+    const char* fault = sensor_fault({0.001, 0.002, 2.0, far});
+    ASSERT_NE(fault, nullptr);
+    EXPECT_NE(std::strstr(fault, "less than"), nullptr) << fault;
+  }
+}
+
 TEST(CameraLimits, OutlinesAreLookedForInTheWidestPicture) {
   // what the sanitizers watch: normals straight across and along the farthest rays
   for_cameras([&](const Intrinsics& camera) {
@@ -80,8 +110,8 @@ TEST(CameraLimits, OutlinesAreLookedForInTheWidestPicture) {
         for (const std::int32_t nz : {-16384, 0, 16384})
           for (const std::int32_t nx : {-16384, 0, 16384}) {
             std::int32_t distance = 0;
-            EXPECT_FALSE(find_contour(o.surface, projector, {8191, 8191}, o.surface.vertex(u, v, 8000),
-                                      {nx, 0, nz}, distance));
+            EXPECT_FALSE(find_contour(o.surface, projector, {kFarthestReading, kFarthestReading},
+                                      o.surface.vertex(u, v, 8000), {nx, 0, nz}, distance));
           }
   });
 }

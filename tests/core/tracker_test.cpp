@@ -258,6 +258,23 @@ TEST_F(TrackerTest, WorksWithLessUnderLoad) {
   expect_at(see(6), pose(6));
 }
 
+TEST_F(TrackerTest, TakesALevelThatIsNoNumberForTheLeast) {
+  Vector3 least = Vector3::Zero();
+  for (const double level : {0.0, std::nan(""), -1.0}) {
+    start();
+    tracker_.set_work_level(level);
+    tracker_.start_from(pose(0));
+    Vector3 at = Vector3::Zero();
+    for (int frame = 0; frame < 3; ++frame) {
+      const TrackResult& r = see(frame);
+      expect_at(r, pose(frame));
+      at = r.pose.translation;
+    }
+    if (level == 0) least = at;
+    EXPECT_EQ(at, least) << level;
+  }
+}
+
 TEST_F(TrackerTest, TellsStagesInOrder) {
   start();
   std::vector<Stage> stages;
@@ -286,6 +303,9 @@ TEST_F(TrackerTest, SaysInWordsWhyItCannotStart) {
   Intrinsics broken = camera_;
   broken.fx = std::nan("");
   EXPECT_NE(t.start(model(), broken, sensor, settings, block_), nullptr);
+  SensorDescription odd;
+  odd.noise_growth = std::nan("");
+  EXPECT_NE(t.start(model(), camera_, odd, settings, block_), nullptr);
   TrackSettings none = settings;
   none.max_regions = 0;
   EXPECT_NE(t.start(model(), camera_, sensor, none, block_), nullptr);

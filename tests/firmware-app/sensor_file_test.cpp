@@ -22,7 +22,7 @@ TEST(SensorFile, NearMustBeBelowFar) {
   SensorFile sensor;
   const Outcome parsed = parse_sensor("[noise]\nnear_limit = 3\nfar_limit = 2\n", "s.toml", sensor);
   ASSERT_FALSE(parsed);
-  EXPECT_NE(parsed.error().message.find("near_limit must be below"), std::string::npos);
+  EXPECT_NE(parsed.error().message.find("near_limit must be less than"), std::string::npos);
 }
 
 TEST(SensorFile, AUnitHasOneRange) {
