@@ -47,7 +47,8 @@ struct TrackResult {
   std::int64_t utime = 0;  ///< capture time of the frame, microseconds
   std::int64_t frame = 0;  ///< the frame's number
   TrackState state = TrackState::searching;
-  bool frame_used = true;  ///< false: the frame was unusable (wrong size, no reading) and changed nothing
+  bool frame_used = true;  ///< false: the frame could not be read (no memory, another size than the camera's,
+                           ///< rows that overlap) and changed nothing; one without any reading is used
   float confidence = 0;    ///< [0, 1]
   RigidTransform pose;     ///< the base region, camera <- model, metres
   std::span<const Region> regions;  ///< base first (when observed), then ascending ids
