@@ -27,6 +27,12 @@ struct IntPoint {
   std::int32_t x = 0, y = 0, z = 0;
 };
 
+/// Exact. Overflow bound: coordinates below 2^29.
+[[nodiscard]] constexpr std::int64_t squared_distance(const IntPoint& a, const IntPoint& b) noexcept {
+  const std::int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  return x * x + y * y + z * z;
+}
+
 /// Units of length in the integer path.
 inline constexpr int kUnitsPerMillimetre = 16;         ///< of points
 inline constexpr double kUnitsPerMetre = 16000.0;      ///< of points
@@ -95,9 +101,6 @@ class Surface {
     return step < 1 ? 1 : step > kMostStep ? kMostStep : step;
   }
   [[nodiscard]] PixelSpan pixel_span(double metres) const noexcept;
-  [[nodiscard]] int normal_step(std::uint16_t z8, double metres) const noexcept {
-    return normal_step(z8, pixel_span(metres));
-  }
   static constexpr int kMostStep = 8;
 
   /// Largest depth difference between neighbouring pixels of one surface, 1/8 mm.

@@ -10,8 +10,6 @@ namespace pliant {
 
 namespace {
 
-constexpr double kTan75 = 3.732;
-
 std::uint16_t rounded(double x, double most) noexcept {
   return static_cast<std::uint16_t>(std::clamp(std::floor(x + 0.5), 0.0, most));
 }

@@ -23,6 +23,8 @@ struct DepthScale {
   DepthScale(const Intrinsics& camera, const SensorDescription& sensor) noexcept;
 };
 
+inline constexpr double kTan75 = 3.732;  ///< the steepest slope that counts as one surface
+
 /// The largest depth difference between neighbouring pixels of one surface: 4 σ of the sensor plus a slope of
 /// 75° over one pixel, in 1/8 mm, as an integer quadratic function of the depth.
 /// Formats: base 1/8 mm, slope Q16, growth Q(16 - growth_shift) a squared depth of 2^16 units. The result is

@@ -12,11 +12,6 @@ namespace {
 constexpr int kMostPixels = 20;  // reach of a search
 constexpr int kLooks = 6;        // to each side
 
-std::int64_t square_distance(const IntPoint& a, const IntPoint& b) noexcept {
-  const std::int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return x * x + y * y + z * z;
-}
-
 bool is_taken(std::span<const std::uint32_t> taken, std::int32_t pixel) noexcept {
   return (taken[static_cast<std::size_t>(pixel >> 5)] >> (pixel & 31) & 1U) != 0;
 }
@@ -38,7 +33,7 @@ std::int32_t nearest_free(const Surface& surface, const Projector& projector, co
       if (z8 == 0) continue;
       const std::int32_t pixel = v * surface.width() + u;
       const IntPoint q = surface.vertex(u, v, z8);
-      const std::int64_t square = square_distance(q, aim);
+      const std::int64_t square = squared_distance(q, aim);
       if (square >= best || is_taken(taken, pixel)) continue;
       best = square;
       match = pixel;
@@ -70,7 +65,7 @@ void search_deformed(const ModelTables& model, const Surface& surface, const Pro
     if (points.match[i] < 0) continue;
     take(taken, points.match[i]);
     points.residual[i] = static_cast<std::int32_t>(
-        integer_sqrt(static_cast<std::uint32_t>(std::min<std::int64_t>(square_distance(p, q), 0xFFFFFFFF))));
+        integer_sqrt(static_cast<std::uint32_t>(std::min<std::int64_t>(squared_distance(p, q), 0xFFFFFFFF))));
   }
 }
 

@@ -7,8 +7,6 @@ namespace pliant {
 
 namespace {
 
-constexpr double kTan75 = 3.732;
-
 int reduction(const Intrinsics& camera) noexcept {
   int factor = 1;
   while ((camera.width / factor) * (camera.height / factor) > DepthSnapshot::kMostPixels) ++factor;

@@ -23,7 +23,7 @@ bool find_aside(const Surface& surface, const AsideReach& reach, int u, int v, c
       const std::int32_t gap = 2 * z8 - at.z;
       if (z8 == 0 || gap > reach.inward || -gap > reach.outward) continue;
       const IntPoint q = surface.vertex(uu, vv, z8);
-      const std::int64_t x = q.x - at.x, y = q.y - at.y, z = q.z - at.z, square = x * x + y * y + z * z;
+      const std::int64_t square = squared_distance(q, at);
       if (square < best && surface.faces(uu, vv, Surface::normal_step(z8, reach.spacing), n)) {
         best = square;
         nearest = q;

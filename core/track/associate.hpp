@@ -28,8 +28,8 @@ void associate(const ModelTables& model, const Surface& surface, const Projector
                const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept;
 
 /// Signed distance of `reading` from `point` along the unit `normal` (Q14) in 1/256 mm.
-/// Overflow bound: |reading - point| < 2^16. So it is within a pixel of the point's ray and kFarthestReading in
-/// depth: no ray goes farther aside than kMostSlope, no pixel is wider than 0.1 of the depth.
+/// Overflow bound: |reading - point| < 2^16. So it is within a pixel of the point's ray and kFarthestReading
+/// in depth: no ray goes farther aside than kMostSlope, no pixel is wider than 0.1 of the depth.
 [[nodiscard]] inline std::int32_t plane_distance(const IntPoint& reading, const IntPoint& point,
                                                  const IntPoint& normal) noexcept {
   return (normal.x * (reading.x - point.x) + normal.y * (reading.y - point.y) +

@@ -96,9 +96,8 @@ struct Verdict {
 
 /// Below 2^15 on each axis: a model is smaller.
 std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
-  const std::int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
   return static_cast<std::int32_t>(integer_sqrt(static_cast<std::uint32_t>(
-      std::min<std::int64_t>(x * x + y * y + z * z, std::numeric_limits<std::uint32_t>::max()))));
+      std::min<std::int64_t>(squared_distance(a, b), std::numeric_limits<std::uint32_t>::max()))));
 }
 
 /// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
@@ -197,7 +196,6 @@ SightCounts label(const LabelContext& context, const RegionSet& regions, PointSt
       counts.deformed += sight == Sight::agrees ? 1 : 0;
     } else if (!off && sight == Sight::agrees && (look.sight == Sight::agrees || verdict.turned)) {
       points.label[i] = points.home[i];
-      ++counts.agree;
     } else if (sight == Sight::agrees) {
       points.label[i] = kDeformed;  // seen, but not where its region puts it
       ++counts.deformed;

@@ -8,8 +8,7 @@ namespace pliant {
 
 /// What a frame shows of the points that face the camera inside the picture.
 struct SightCounts {
-  std::uint32_t facing = 0;  ///< face the camera inside the picture
-  std::uint32_t agree = 0;
+  std::uint32_t facing = 0;    ///< face the camera inside the picture
   std::uint32_t in_front = 0;  ///< the camera sees through them
   std::uint32_t behind = 0;    ///< something stands before them
   std::uint32_t deformed = 0;  ///< are where the warp puts them, off their region

@@ -146,12 +146,15 @@ TEST(Surface, ExtremeReadingsAndCamerasStayInBounds) {
 
 TEST(Surface, NormalStepSpansTheLength) {
   Observed o;
-  EXPECT_EQ(o.surface.normal_step(0, 0.005), 1);
-  EXPECT_EQ(o.surface.normal_step(8000, 0.0), 1);
-  EXPECT_EQ(o.surface.normal_step(8000, 0.010), 3);  // 290 px · 1 cm at 1 m
-  EXPECT_EQ(o.surface.normal_step(4000, 0.010), 6);
-  EXPECT_EQ(o.surface.normal_step(1, 5.0), Surface::kMostStep);
-  EXPECT_EQ(o.surface.normal_step(65535, 1e9), Surface::kMostStep);
+  const auto step = [&](std::uint16_t z8, double metres) {
+    return Surface::normal_step(z8, o.surface.pixel_span(metres));
+  };
+  EXPECT_EQ(step(0, 0.005), 1);
+  EXPECT_EQ(step(8000, 0.0), 1);
+  EXPECT_EQ(step(8000, 0.010), 3);  // 290 px · 1 cm at 1 m
+  EXPECT_EQ(step(4000, 0.010), 6);
+  EXPECT_EQ(step(1, 5.0), Surface::kMostStep);
+  EXPECT_EQ(step(65535, 1e9), Surface::kMostStep);
 }
 
 }  // namespace
