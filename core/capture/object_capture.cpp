@@ -48,6 +48,7 @@ std::size_t ObjectCapture::workspace_bytes(const Intrinsics& camera, const Senso
 const char* ObjectCapture::start(const Intrinsics& camera, const SensorDescription& sensor,
                                  const CaptureSettings& settings, std::span<std::byte> block) noexcept {
   if (const char* fault = intrinsics_fault(camera)) return fault;
+  if (const char* fault = sensor_fault(sensor)) return fault;
   if (!usable_size(settings.size)) return "the size is not within 0.05 to 1 m";
   if (settings.voxel != 0 && !(settings.voxel >= 0.0005 && settings.voxel <= 0.02))
     return "the voxel is not within 0.0005 to 0.02 m";

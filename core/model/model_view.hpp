@@ -1,4 +1,4 @@
-// The one cached model: a flat, position-independent image that the device maps read-only, and a checked view
+// The one cached model: a flat, position-independent image that the device holds, and a checked view
 // of it.
 #pragma once
 

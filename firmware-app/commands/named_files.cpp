@@ -62,9 +62,7 @@ NamedFiles& NamedFiles::writes(std::string option, const std::string& path) {
 NamedFiles& NamedFiles::uses_log(std::string option, const std::string& lcm_url) {
   const Result<LcmUrl> url = LcmUrl::parse(lcm_url);
   if (!url || url->provider != LcmUrl::Provider::log_file) return *this;
-  constexpr std::string_view kFile = "file://";
-  const std::string path = url->spelled.substr(kFile.size());
-  return add(std::move(option), path.substr(0, path.find('?')), url->writes ? Use::write : Use::read);
+  return add(std::move(option), url->path, url->writes ? Use::write : Use::read);
 }
 
 NamedFiles& NamedFiles::writes_tables(std::string option, const std::string& folder) {

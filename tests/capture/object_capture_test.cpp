@@ -1,6 +1,7 @@
 // Whole captures: what is fused, what is left out, and what it costs.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "drivers/simulated/still_mesh.hpp"
@@ -159,6 +160,9 @@ TEST_F(DrawnCapture, RefusesWhatIsOutOfRange) {
   settings.voxel = 0;
   EXPECT_NE(capture_.start(small_camera(), {}, settings, {block_.get(), 4096}), nullptr)
       << "too small a block";
+  SensorDescription sensor;
+  sensor.noise_growth = std::nan("");
+  EXPECT_STREQ(capture_.start(small_camera(), sensor, {}, {}), "noise_growth must be 0 to 0.1 1/m");
 }
 
 TEST(ObjectCapture, MakesNoHeapCallInAPicture) {
