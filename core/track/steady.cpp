@@ -11,6 +11,12 @@ namespace {
 /// Weight of the latest step in the mean: noise of single steps leaves a quarter of itself in it.
 constexpr double kLatest = 1.0 / 8;
 
+/// Below this share of the noise, the mean tells no motion.
+constexpr double kNoMotion = 0.5;
+/// A sensor's readings wander in step, all of a surface together, by as much as the noise that is left in
+/// them.
+constexpr double kAtRest = 2;
+
 double share_of_motion(double squared, double noise) noexcept {
   return squared > 0 ? squared / (squared + noise * noise) : 0;
 }
@@ -24,8 +30,11 @@ RigidTransform steadied(const RigidTransform& before, const RigidTransform& afte
   Vector6 step = x;
   step.head<3>() *= half_radius;
   memory.mean += kLatest * (step - memory.mean);
-  const double share = std::max({share_of_motion(step.squaredNorm(), 3 * noise),
-                                 share_of_motion(memory.mean.squaredNorm(), noise), least});
+  const bool moves = memory.mean.squaredNorm() >= kNoMotion * kNoMotion * noise * noise;
+  memory.still = moves ? 0 : std::min(memory.still + 1, kUntilAtRest);
+  const double held = memory.still == kUntilAtRest ? kAtRest * noise : noise;
+  const double share = std::max({share_of_motion(step.squaredNorm(), 3 * held),
+                                 share_of_motion(memory.mean.squaredNorm(), held), least});
   RigidTransform out = motion_about(share * x, at) * before;
   out.rotation = orthonormalised(out.rotation);
   return out;

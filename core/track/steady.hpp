@@ -11,8 +11,9 @@ inline constexpr double kNoiseOfPose = 0.5;
 /// The part of the motion from `before` to `after` that noise does not explain: a share s² / (s² + n²) of it,
 /// s being how far it moves a body of radius 2 · `half_radius` about `centre` (model frame, metres) in the
 /// root mean square. n is three times `noise` for this step alone, beyond what noise reaches, and `noise` for
-/// the mean of the last steps; the larger share counts, and no less than `least`. Lags by no more than the
-/// noise behind steady motion, by twice that in its first second.
+/// the mean of the last steps; the larger share counts, and no less than `least`. Of a body that has been at
+/// rest for some frames n is twice that. Lags by no more than the noise behind steady motion, by twice that
+/// in its first second.
 [[nodiscard]] RigidTransform steadied(const RigidTransform& before, const RigidTransform& after,
                                       const Vector3& centre, double half_radius, double noise,
                                       StepMemory& memory, double least = 0) noexcept;

@@ -14,10 +14,14 @@
 
 namespace pliant {
 
+/// Frames without motion after which a body is at rest: a fifth of a second at 30 Hz.
+inline constexpr int kUntilAtRest = 6;
+
 /// What is remembered of a pose's steps: their mean over some frames, the latest counting most, turn times
 /// half radius and shift, metres. Noise cancels in it, motion does not.
 struct StepMemory {
   Vector6 mean = Vector6::Zero();
+  int still = 0;  ///< frames in a row in which that mean was within noise, up to kUntilAtRest
 };
 
 /// A region that is followed. Its slot in RegionSet is its id.

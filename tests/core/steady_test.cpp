@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -117,6 +118,33 @@ TEST(Steadied, HoldsStillWhatTrembles) {
     most = std::max(most, way(out, start()));
   }
   EXPECT_LT(most, 0.15 * 0.3 * kNoise);
+}
+
+TEST(Steadied, WhatIsAtRestHardlyWandersWithTheReadings) {
+  RigidTransform out = start();
+  StepMemory memory;
+  double most = 0;
+  for (int frame = 0; frame < 300; ++frame) {
+    const double wander = 0.4 * kNoise * std::sin(2 * std::numbers::pi * frame / 30);
+    out = steady(out, shifted(start(), {wander, 0, 0}), memory);
+    if (frame >= 60) most = std::max(most, way(out, start()));
+  }
+  EXPECT_LT(most, 0.02 * kNoise);
+}
+
+TEST(Steadied, WhatSetsOutFromRestIsFollowedAtOnce) {
+  for (const double speed : {1.0, 3.0, 10.0}) {
+    RigidTransform truth = start(), out = start();
+    StepMemory memory;
+    for (int frame = 0; frame < 60; ++frame) out = steady(out, truth, memory);
+    double lag = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+      truth = shifted(truth, {speed * kNoise, 0, 0});
+      out = steady(out, truth, memory);
+      lag = std::max(lag, way(out, truth));
+    }
+    EXPECT_LT(lag, 4 * kNoise) << speed;
+  }
 }
 
 TEST(Steadied, LeavesAThirdOfNoiseAsLargeAsExpected) {
