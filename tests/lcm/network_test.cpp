@@ -248,11 +248,11 @@ TEST_F(LcmNetwork, LcmLoggerRecordsWhatOurSubscriberReads) {
   TrackMessages messages(sample.rest, kSampleModelId);
   auto publisher = LcmPublisher::create(kSettings, 10000);
   ASSERT_TRUE(publisher);
-  // The logger writes its file after its own self test: send until there is something in it.
+  // The logger writes its file after its own self test: send until there are several frames in it.
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   std::error_code none;
   while (std::chrono::steady_clock::now() < end &&
-         !(std::filesystem::exists(log, none) && std::filesystem::file_size(log, none) > 100000)) {
+         !(std::filesystem::exists(log, none) && std::filesystem::file_size(log, none) > 500'000)) {
     (*publisher)->publish(messages.encode(sample.result), 1);
     StatusContent status;
     status.version = "0.1.0";
