@@ -16,10 +16,10 @@ struct SensorDescription {
   static constexpr Range kNoiseFloor = {0.0001, 0.05}, kNoiseGrowth = {0, 0.1}, kNearLimit = {0.05, 4},
                          kFarLimit = {0.2, 8};
 
-  double noise_floor = 0.0012;   ///< metres
-  double noise_growth = 0.0019;  ///< 1/metres
-  double near_limit = 0.3;       ///< metres; nearer readings are not used
-  double far_limit = 4.0;        ///< metres; farther readings are not used
+  double noise_floor = 0.0012;   ///< metres, within kNoiseFloor
+  double noise_growth = 0.0019;  ///< 1/metres, within kNoiseGrowth
+  double near_limit = 0.3;       ///< metres, within kNearLimit; nearer readings are not used
+  double far_limit = 4.0;        ///< metres, within kFarLimit; farther readings are not used
 
   [[nodiscard]] double sigma(double z) const noexcept {
     return noise_floor + noise_growth * (z - 0.4) * (z - 0.4);

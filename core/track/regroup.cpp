@@ -138,6 +138,8 @@ void settle(const RegroupContext& context, const RegionSet& regions, bool all, P
     if (look.sight == Sight::agrees) {
       points.label[i] = points.home[i];
       points.position[i] = look.point;
+      points.residual[i] = look.residual;
+      points.match[i] = look.match;
     } else {
       points.label[i] = kDeformed;
     }

@@ -105,7 +105,10 @@ TEST_F(RegionTree, PointsOfARegionThatWentStayWhereTheyAreSeen) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] != 1 || scene().points.label[i] == kNotObserved) continue;
     if (scene().points.label[i] == 0) {
-      ASSERT_EQ(sighting.look(i, poses[0]).sight, Sight::agrees);
+      const Sighting::Look look = sighting.look(i, poses[0]);
+      ASSERT_EQ(look.sight, Sight::agrees);
+      EXPECT_EQ(scene().points.residual[i], look.residual);
+      EXPECT_EQ(scene().points.match[i], look.match);
       continue;
     }
     const IntPoint &a = before[i], &b = scene().points.position[i];
