@@ -13,7 +13,7 @@
 namespace pliant {
 
 /// What the user names behind "v4l2:": a path ("/dev/video2"), a bus id ("usb-0000:00:14.0-2"), or nothing
-/// for the first node that offers depth; then, if wanted, "?format=Z16".
+/// for the first node that offers depth; then, if wanted, "?format=Z16", which the node must offer.
 struct V4l2Address {
   std::string place;
   std::string format;  ///< empty: the best that is offered

@@ -193,7 +193,21 @@ std::int64_t V4l2Source::capture_time(std::int64_t stamp_us) const {
   return usable ? stamp_us + (wall - monotonic) : wall;
 }
 
-/// Opens what the address names.
+Result<const V4l2Format*> choose_format(const V4l2Node& node, const std::string& name) {
+  const auto offered = [&node](const V4l2Format& format) {
+    return std::find(node.formats.begin(), node.formats.end(), format.code) != node.formats.end();
+  };
+  for (const V4l2Format& format : v4l2_formats())
+    if (offered(format) && (name.empty() || format.name == name)) return &format;
+  std::string there;
+  for (const std::uint32_t code : node.formats) there += (there.empty() ? "" : ", ") + fourcc_text(code);
+  return Error{ErrorKind::device, fmt::format("v4l2: {} ({}) offers no {}; it has {}", node.path, node.card,
+                                              name.empty() ? std::string("depth format") : name,
+                                              there.empty() ? "none" : there)};
+}
+
+/// Opens what the address names. A camera may have several nodes: the format asked for is that of one of
+/// them.
 Outcome find_node(V4l2System& system, const V4l2Address& address, V4l2File& file, V4l2Node& node) {
   if (address.place.starts_with('/')) return open_v4l2_node(system, address.place, file, node);
   Error reason{
@@ -207,23 +221,14 @@ Outcome find_node(V4l2System& system, const V4l2Address& address, V4l2File& file
       if (opened.error().kind == ErrorKind::device) reason = opened.error();
       continue;
     }
-    if (node.offers_depth() && (address.place.empty() || node.bus == address.place)) return success();
+    if (node.offers_depth() && (address.place.empty() || node.bus == address.place)) {
+      const Result<const V4l2Format*> format = choose_format(node, address.format);
+      if (format) return success();
+      reason = format.error();
+    }
     file.close();
   }
   return reason;
-}
-
-Result<const V4l2Format*> choose_format(const V4l2Node& node, const std::string& name) {
-  const auto offered = [&node](const V4l2Format& format) {
-    return std::find(node.formats.begin(), node.formats.end(), format.code) != node.formats.end();
-  };
-  for (const V4l2Format& format : v4l2_formats())
-    if (offered(format) && (name.empty() || format.name == name)) return &format;
-  std::string there;
-  for (const std::uint32_t code : node.formats) there += (there.empty() ? "" : ", ") + fourcc_text(code);
-  return Error{ErrorKind::device, fmt::format("v4l2: {} ({}) offers no {}; it has {}", node.path, node.card,
-                                              name.empty() ? std::string("depth format") : name,
-                                              there.empty() ? "none" : there)};
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace pliant::test {
 
 namespace {
 
-constexpr int kFile = 7;
+constexpr int kFile = 7, kOtherFile = 8;
 
 int error(int number) {
   errno = number;
@@ -35,10 +35,11 @@ std::uint32_t FakeKernel::image_bytes() const {
 
 int FakeKernel::open(const char* name) {
   if (fails()) return error(fail_with);
-  if (name != path || !plugged) return error(ENOENT);
+  const bool other = std::string_view(name) == "/dev/video0" && !other_formats.empty();
+  if ((name != path && !other) || !plugged) return error(ENOENT);
   if (open_error != 0) return error(open_error);
   ++open_files;
-  return kFile;
+  return other ? kOtherFile : kFile;
 }
 
 int FakeKernel::close(int /*file*/) {
@@ -50,8 +51,14 @@ int FakeKernel::close(int /*file*/) {
 
 int FakeKernel::ioctl(int file, unsigned long request, void* argument) {
   if (fails()) return error(fail_with);
-  if (file != kFile || open_files != 1) return error(EBADF);
+  if ((file != kFile && file != kOtherFile) || open_files != 1) return error(EBADF);
   if (!plugged) return error(ENODEV);
+  if (file == kOtherFile && request == VIDIOC_ENUM_FMT) {
+    auto& description = *static_cast<v4l2_fmtdesc*>(argument);
+    if (description.index >= other_formats.size()) return error(EINVAL);
+    description.pixelformat = other_formats[description.index];
+    return 0;
+  }
   return answer(request, argument);
 }
 

@@ -18,6 +18,7 @@ class FakeKernel final : public V4l2System {
   // The camera.
   std::vector<std::uint32_t> formats = {V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_Z16};
   std::string bus = "usb-0000:00:14.0-2", path = "/dev/video2";
+  std::vector<std::uint32_t> other_formats;  ///< of the camera's other node, /dev/video0; without any, none
   bool multi_planar = false, plugged = true, is_capture = true;
   bool used_elsewhere = false;            ///< another program streams from it
   std::uint32_t width = 64, height = 48;  ///< the only size that it has

@@ -99,6 +99,18 @@ TEST(V4l2Source, DevicesAreFoundByWhatTheyOffer) {
   rig.expect_refused(ErrorKind::bad_input, "delivers no pictures", {"/dev/video2", ""});
 }
 
+TEST(V4l2Source, TheFormatAskedForChoosesAmongTheNodesOfACamera) {
+  Rig rig;
+  rig.kernel.other_formats = {V4L2_PIX_FMT_Y16};  // infrared, on the node that comes first
+  rig.start({"", "Z16"});
+  rig.next();
+  EXPECT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
+  rig.source.reset();
+  rig.start({"usb-0000:00:14.0-2", "Z16"});
+  rig.source.reset();
+  rig.expect_refused(ErrorKind::device, "offers no INZI; it has YUYV, Z16", {"usb-0000:00:14.0-2", "INZI"});
+}
+
 TEST(V4l2Source, WhatCannotBeUsedIsNamedWithItsMend) {
   Rig rig;
   rig.kernel.open_error = EACCES;
