@@ -11,6 +11,12 @@
 
 namespace pliant {
 
+/// Whether a list can hold this stamp, microseconds: 0 to 10^10 s.
+[[nodiscard]] constexpr bool is_listable(std::int64_t utime) noexcept {
+  constexpr std::int64_t kMost = 10'000'000'000'000'000;
+  return utime >= 0 && utime <= kMost;
+}
+
 struct DepthListEntry {
   std::int64_t utime = 0;  ///< microseconds
   std::string file;        ///< relative to the recording's folder, inside it

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "drivers/images/png.hpp"
+#include "drivers/recording/depth_list.hpp"
 
 namespace pliant {
 
@@ -52,6 +53,8 @@ Outcome RecordingWriter::write(const DepthFrame& frame) {
   if (frame.width != camera.width || frame.height != camera.height)
     return failed(folder_, fmt::format("a frame of {}x{} pixels does not fit this recording's camera",
                                        frame.width, frame.height));
+  if (!is_listable(frame.utime))
+    return failed(folder_, fmt::format("no recording can hold a stamp of {} microseconds", frame.utime));
   const std::string name = fmt::format("depth/{:06}.png", frames_);
   if (Outcome stored =
           write_png_grey16(folder_ / name, {frame.depth, frame.width, frame.height, frame.stride}, png_);

@@ -27,7 +27,7 @@ class RecordingWriter {
                                                                        const CameraFile& camera);
 
   /// Appends a frame; its file is named by its position in this recording. The frame must have the camera's
-  /// size.
+  /// size and a stamp that is_listable().
   [[nodiscard]] Outcome write(const DepthFrame& frame);
   /// Appends "<seconds> tx ty tz qx qy qz qw" to groundtruth.txt, which comes into being with its first line.
   [[nodiscard]] Outcome write_truth(std::int64_t utime, const RigidTransform& camera_from_model);

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "drivers/recording/depth_list.hpp"
 #include "drivers/recording/recording_writer.hpp"
 #include "drivers/simulated/truth_writer.hpp"
 #include "firmware-app/commands/commands.hpp"
@@ -107,6 +108,11 @@ int record(const RecordOptions& options) {
     if (item.event == SourceEvent::timeout) continue;
     ++taken;
     latest = item.frame.number;
+    if (item.event == SourceEvent::frame && !is_listable(item.frame.utime)) {
+      item.event = SourceEvent::bad_frame;
+      item.fault = fmt::format("frame {} has a stamp of {} microseconds, which no recording can hold",
+                               item.frame.number, item.frame.utime);
+    }
     if (item.event == SourceEvent::bad_frame) {
       ++bad_frames;
       fault = item.fault;

@@ -1,4 +1,6 @@
 // pliant record.
+#include "drivers/lcm/depth_messages.hpp"
+#include "drivers/lcm/lcm_log_writer.hpp"
 #include "tests/commands/program.hpp"
 
 namespace pliant::test {
@@ -77,6 +79,28 @@ TEST_F(RecordCommand, AnLcmLogWithDepthIsASourceLikeTheOneItCameFrom) {
   EXPECT_EQ(hash("first.json"), hash("again.json"));
   expect_refused(run_pliant({"run", "--source", "lcmlog:" + at("again.json"), "--model", box_model()}), 2,
                  {"again.json", "not an LCM log"});
+}
+
+TEST_F(RecordCommand, AFrameWhoseStampNoRecordingCanHoldIsABadFrame) {
+  const Intrinsics camera{32, 24, 30, 30, 15.5, 11.5, 1000};
+  std::vector<std::uint16_t> pixels(std::size_t{32} * 24, 800);
+  Result<std::unique_ptr<LcmLogWriter>> log = LcmLogWriter::open(at("log"), false);
+  ASSERT_TRUE(log) << log.error().message;
+  DepthMessages messages(32, 24);
+  constexpr std::int64_t kMost = 10'000'000'000'000'000;  // microseconds
+  for (const std::int64_t utime : {std::int64_t{0}, std::int64_t{-1'500'000}, kMost, kMost + 1}) {
+    ++pixels[0];
+    for (const MessageBody& body : messages.encode({pixels.data(), 32, 24, 32, utime, 0}, camera))
+      ASSERT_TRUE((*log)->write("PLIANT_DEPTH", body.bytes));
+  }
+  Ended ended = run_pliant({"record", "--source", "lcmlog:" + at("log"), "-o", at("r")});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("recorded 2 frames"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("left out 2 bad ones (the last: frame 3 "), std::string::npos) << ended.out;
+  // What was written can be read again.
+  ended = run_pliant({"record", "--source", "recording:" + at("r"), "-o", at("again")});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(read_file(at("again/depth.txt")), read_file(at("r/depth.txt")));
 }
 
 }  // namespace
