@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "drivers/usb/usb_place.hpp"
 
@@ -26,11 +27,9 @@ void judge(UsbFinding& finding, const UsbServed& served) {
                fmt::format("is connected by USB 2 ({} Mbit/s); plug it into a USB 3 port with a USB 3 cable",
                            device.megabits));
   if (kind.access == UsbAccess::openni2) {
-    if (!device.accessible)
-      return set(UsbTrouble::no_permission,
-                 fmt::format("no permission for {}; add this line to /etc/udev/rules.d/"
-                             "60-pliant.rules and plug it in again: {}",
-                             device.node(), udev_rule(device.vendor, device.product)));
+    UsbHindrance hindrance = hindrance_of(device);
+    if (hindrance.trouble == UsbTrouble::no_permission)
+      return set(hindrance.trouble, std::move(hindrance.reason));
     const bool listed = std::find(served.by_openni2.begin(), served.by_openni2.end(),
                                   std::pair(device.vendor, device.product)) != served.by_openni2.end();
     if (!listed)
@@ -38,9 +37,7 @@ void judge(UsbFinding& finding, const UsbServed& served) {
                  kind.remark.empty()
                      ? std::string("OpenNI2 does not list it; is the package libopenni2-0 whole?")
                      : std::string(kind.remark));
-    if (device.in_use)
-      set(UsbTrouble::busy, fmt::format("another program uses it ('fuser {}' tells which)", device.node()));
-    return;
+    return set(hindrance.trouble, std::move(hindrance.reason));
   }
   const auto is_here = [&device](const std::string& bus) { return is_at_place(device, bus); };
   if (std::any_of(served.busy_buses.begin(), served.busy_buses.end(), is_here))
@@ -56,6 +53,18 @@ void judge(UsbFinding& finding, const UsbServed& served) {
 
 }  // namespace
 
+UsbHindrance hindrance_of(const UsbDevice& device) {
+  if (!device.accessible)
+    return {
+        UsbTrouble::no_permission,
+        fmt::format("no permission for {}; be in the group video ('sudo adduser $USER video', then log in "
+                    "again), add this line to /etc/udev/rules.d/60-pliant.rules and plug it in again: {}",
+                    device.node(), udev_rule(device.vendor, device.product))};
+  if (device.in_use)
+    return {UsbTrouble::busy, fmt::format("another program uses it ('fuser {}' tells which)", device.node())};
+  return {};
+}
+
 std::vector<UsbFinding> judge_usb_devices(std::span<const UsbDevice> devices, const UsbServed& served) {
   std::vector<UsbFinding> findings;
   for (const UsbDevice& device : devices) {
@@ -69,8 +78,9 @@ std::vector<UsbFinding> judge_usb_devices(std::span<const UsbDevice> devices, co
 
 std::string udev_rule(std::uint16_t vendor, std::uint16_t product) {
   return fmt::format(
-      R"(SUBSYSTEM=="usb", ATTR{{idVendor}}=="{:04x}", ATTR{{idProduct}}=="{:04x}", TAG+="uaccess")", vendor,
-      product);
+      R"(SUBSYSTEM=="usb", ATTR{{idVendor}}=="{:04x}", ATTR{{idProduct}}=="{:04x}", TAG+="uaccess", )"
+      R"(GROUP="video", MODE="0660")",
+      vendor, product);
 }
 
 }  // namespace pliant

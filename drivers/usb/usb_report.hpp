@@ -34,11 +34,18 @@ struct UsbServed {
   std::string hidden_node;               ///< why a video node could not be asked; empty where all could
 };
 
+/// What keeps this user from opening a device that OpenNI2 serves, which lists what it cannot open, too.
+struct UsbHindrance {
+  UsbTrouble trouble = UsbTrouble::none;  ///< none, no_permission or busy
+  std::string reason;                     ///< with the mend; empty where there is none
+};
+[[nodiscard]] UsbHindrance hindrance_of(const UsbDevice& device);
+
 /// The depth cameras among `devices`, each with what is in its way.
 [[nodiscard]] std::vector<UsbFinding> judge_usb_devices(std::span<const UsbDevice> devices,
                                                         const UsbServed& served);
 
-/// The udev line that lets whoever sits at the machine use a device.
+/// The udev line that lets whoever sits at the machine, and the group video, use a device.
 [[nodiscard]] std::string udev_rule(std::uint16_t vendor, std::uint16_t product);
 
 }  // namespace pliant

@@ -41,9 +41,13 @@ void list_openni2(Lines& lines, const std::vector<UsbDevice>& on_bus, UsbServed&
   }
   for (const OpenNi2Device& device : *devices) {
     served.by_openni2.emplace_back(device.vendor_id, device.product_id);
+    const std::string what = fmt::format("openni2:{}  {} {}", device.uri, device.vendor, device.name);
     const UsbDevice* usb = find_at_place(on_bus, device.uri);
-    if (usb == nullptr || !usb->in_use)
-      lines.usable += fmt::format("openni2:{}  {} {}\n", device.uri, device.vendor, device.name);
+    const UsbHindrance hindrance = usb == nullptr ? UsbHindrance{} : hindrance_of(*usb);
+    if (hindrance.trouble == UsbTrouble::none)
+      lines.usable += what + "\n";
+    else if (find_usb_device_kind(usb->vendor, usb->product) == nullptr)  // list_usb() tells of the others
+      lines.hindered += fmt::format("{}: {}\n", what, hindrance.reason);
   }
 }
 
