@@ -44,6 +44,8 @@ int answer(mg_connection* connection, int code, std::string_view reason, std::st
 
 /// What the library calls, on a thread for each connection.
 struct WebServer::Handlers {
+  static constexpr std::size_t kKeyLength = 24;  ///< RFC 6455: 16 bytes in base64
+
   static int page(mg_connection* connection, void* context) {
     const auto& server = *static_cast<const WebServer*>(context);
     const Visit visit = visit_of(connection);
@@ -71,6 +73,8 @@ struct WebServer::Handlers {
   static int connect(const mg_connection* connection, void* context) {
     auto& server = *static_cast<WebServer*>(context);
     if (!may_look(visit_of(connection), server.token_)) return 1;
+    // The library hangs up on a longer key without a call of close(), which would keep the place for ever.
+    if (text_of(mg_get_header(connection, "Sec-WebSocket-Key")).size() != kKeyLength) return 1;
     if (server.viewers_.fetch_add(1) >= kMostViewers) {
       server.viewers_.fetch_sub(1);
       return 1;
