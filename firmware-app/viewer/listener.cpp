@@ -33,10 +33,13 @@ Outcome Listener::connect() {
     link_.fault = bus.error().message;
     return bus.error().kind == ErrorKind::device ? success() : Outcome(bus.error());
   }
-  // A capture shows its growing model beside the tracker's channels, on those with one more word.
+  // A capture shows its growing model beside the tracker's channels, on those with one more word; there are
+  // none where that makes the name too long.
   std::unique_ptr<LcmSubscriber> both[2];
   for (std::size_t i = 0; i < 2; ++i) {
-    auto subscriber = LcmSubscriber::create(*bus, link_.prefix + (i == 0 ? "" : kCaptureWord), handlers());
+    const std::string prefix = link_.prefix + (i == 0 ? "" : kCaptureWord);
+    if (i > 0 && !check_channel_prefix(prefix)) break;
+    auto subscriber = LcmSubscriber::create(*bus, prefix, handlers());
     if (!subscriber) {
       link_.fault = subscriber.error().message;
       return subscriber.error().kind == ErrorKind::device ? success() : Outcome(subscriber.error());
