@@ -121,6 +121,12 @@ class Watcher {
   std::int64_t shedding_since_ns_ = monotonic_ns();
 };
 
+/// Whether the same description says something else now.
+bool is_described_anew(const RunInputs& before, const RunInputs& after) {
+  return before.config.sensor.description == after.config.sensor.description && before.sensor &&
+         after.sensor && !before.sensor->says_the_same_as(*after.sensor);
+}
+
 /// The config as it is now, opened; an error keeps the old one.
 Result<RunInputs> reload(const RunOptions& options, const RunInputs& current) {
   const Result<Config> config = merged_config(options);
@@ -128,17 +134,23 @@ Result<RunInputs> reload(const RunOptions& options, const RunInputs& current) {
   if (options.writes_files() && !changed_keys(current.config, *config).empty())
     return Error{ErrorKind::bad_input, "a run that writes files keeps its config"};
   Result<RunInputs> read = open_run_inputs(options, *config, &current);
-  if (read && options.writes_files() && read->model != current.model)
+  if (!read || !options.writes_files()) return read;
+  if (read->model != current.model)
     return Error{ErrorKind::bad_input,
                  "a run that writes files keeps its model, and the model file is another"};
+  if (is_described_anew(current, *read))
+    return Error{ErrorKind::bad_input,
+                 "a run that writes files keeps its sensor description, and that says something else now"};
   return read;
 }
 
 /// What a reload brings, for people; empty when it brings nothing.
 std::string news_of(const RunInputs& before, const RunInputs& after) {
   std::string news = changed_keys(before.config, after.config);
+  const auto add = [&news](const char* what) { news.append(news.empty() ? "" : ", and ").append(what); };
   if (before.config.model == after.config.model && before.model != after.model)
-    news += news.empty() ? "the model file is another" : ", and the model file is another";
+    add("the model file is another");
+  if (is_described_anew(before, after)) add("the sensor description is another");
   return news;
 }
 

@@ -33,6 +33,10 @@ Result<Config> merged_config(const RunOptions& options) {
 
 namespace {
 
+bool ask_the_same(const std::optional<SensorFile>& a, const std::optional<SensorFile>& b) {
+  return a && b ? a->asks_the_same_as(*b) : a.has_value() == b.has_value();
+}
+
 RunSettings settings_of(const RunOptions& options, const Config& config, const DepthSource& source) {
   RunSettings settings;
   settings.source_name = config.source;
@@ -92,8 +96,9 @@ Result<RunInputs> open_run_inputs(const RunOptions& options, const Config& confi
     if (!sensor) return sensor.error();
     source_options.sensor = *sensor;
   }
+  inputs.sensor = source_options.sensor;
   const bool same_source = before != nullptr && before->config.source == config.source &&
-                           before->config.sensor.description == config.sensor.description &&
+                           ask_the_same(before->sensor, inputs.sensor) &&
                            before->config.sensor.patience_s == config.sensor.patience_s;
   if (same_source) {
     inputs.source = before->source;

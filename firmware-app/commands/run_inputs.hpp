@@ -28,6 +28,7 @@ struct RunOptions {
 
 struct RunInputs {
   Config config;
+  std::optional<SensorFile> sensor;  ///< what the config's description says; empty where it names none
   std::shared_ptr<OpenSource> source;
   std::shared_ptr<ModelFile> model;
   RunSettings settings;

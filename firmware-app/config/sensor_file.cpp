@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <vector>
 
 #include "core/limits.hpp"
@@ -39,6 +40,13 @@ std::vector<Setting> sensor_settings(SensorFile& s) {
 }
 
 }  // namespace
+
+bool SensorFile::says_the_same_as(const SensorFile& other) const {
+  const auto values = [](const SensorDescription& d) {
+    return std::array{d.noise_floor, d.noise_growth, d.near_limit, d.far_limit};
+  };
+  return asks_the_same_as(other) && values(noise) == values(other.noise);
+}
 
 Outcome parse_sensor(std::string_view text, std::string_view name, SensorFile& sensor) {
   SensorFile candidate = sensor;

@@ -137,6 +137,33 @@ TEST_F(Service, AnotherModelUnderTheSameNameIsTold) {
             "pliant: config read again: nothing has changed\n");
 }
 
+TEST_F(Service, AnotherSensorDescriptionUnderTheSameNameIsTakenUp) {
+  const auto describe = [this](double floor) {
+    write_file(at("sensor.toml"), fmt::format("[noise]\nnoise_floor = {}\n", floor));
+  };
+  describe(0.001);
+  write_config("[sensor]\ndescription = \"sensor.toml\"\n");
+  // As below, no frame is dropped.
+  start({"--config", at("c.toml"), "--pace", "fast"});
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(manager_.hears("  tracking", 20'000));
+  describe(0.002);
+  kill(process_, SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  EXPECT_TRUE(manager_.hears("  tracking", 30'000));
+  kill(process_, SIGHUP);
+  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
+  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  Ended ended;
+  EXPECT_LT(end(ended), kEndsWithin);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(ended.err,
+            "pliant: config read again: the sensor description is another\n"
+            "pliant: config read again: nothing has changed\n");
+  EXPECT_NE(ended.out.find("lost 0, searching 0"), std::string::npos) << ended.out;
+}
+
 TEST_F(Service, AValidConfigIsTakenUpWithoutLosingTheObject) {
   write_config("[track]\nbudget_ms = 33\n");
   // No frame is dropped, however busy the machine is: one that is lost was lost by the reload.
