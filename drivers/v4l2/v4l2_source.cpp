@@ -17,8 +17,8 @@ namespace pliant {
 
 namespace {
 
-constexpr int kMostFaultsInARow = 10;  // I/O errors after which a device counts as gone
-constexpr std::int64_t kOldestStampUs = 10'000'000;
+constexpr int kMostFaultsInARow = 10;                // I/O errors after which a device counts as gone
+constexpr std::int64_t kOldestStampUs = 10'000'000;  // of a frame that was fetched in time
 
 class V4l2Source final : public DepthSource {
  public:
@@ -52,7 +52,7 @@ class V4l2Source final : public DepthSource {
   [[nodiscard]] Outcome set_format(const V4l2Format& format);
   void ask_for_rate();
   void describe(const V4l2Filled& filled, SourceItem& item);
-  [[nodiscard]] std::int64_t capture_time(std::int64_t stamp_us) const;
+  [[nodiscard]] std::int64_t capture_time(std::int64_t stamp_us);
   void lose(SourceItem& item, std::string_view what, int error) const {
     item.event = SourceEvent::lost;
     item.fault = v4l2_error(node_.path, what, error).message;
@@ -70,6 +70,7 @@ class V4l2Source final : public DepthSource {
   std::int64_t held_ = -1;  // the buffer that is lent out
   std::int64_t number_ = -1;
   std::uint32_t sequence_ = 0;
+  bool our_clock_ = false;  // a stamp has shown that the driver's clock is the monotonic one
   int faults_in_a_row_ = 0;
 };
 
@@ -186,11 +187,14 @@ void V4l2Source::describe(const V4l2Filled& filled, SourceItem& item) {
   item.frame.stride = item.frame.width;
 }
 
-std::int64_t V4l2Source::capture_time(std::int64_t stamp_us) const {
+std::int64_t V4l2Source::capture_time(std::int64_t stamp_us) {
   // Both clocks at once, each time: the wall clock may have been set since the last frame.
   const std::int64_t monotonic = system_.monotonic_us(), wall = system_.wall_us();
-  const bool usable = stamp_us > 0 && stamp_us <= monotonic && monotonic - stamp_us < kOldestStampUs;
-  return usable ? stamp_us + (wall - monotonic) : wall;
+  const bool possible = stamp_us > 0 && stamp_us <= monotonic;
+  // Some drivers stamp by the camera's clock, whatever they say. Where one stamp was young, an old one is
+  // that of a frame that lay in its buffer for so long: while this program was stopped, for example.
+  our_clock_ = our_clock_ || (possible && monotonic - stamp_us < kOldestStampUs);
+  return possible && our_clock_ ? stamp_us + (wall - monotonic) : wall;
 }
 
 Result<const V4l2Format*> choose_format(const V4l2Node& node, const std::string& name) {

@@ -165,8 +165,9 @@ int FakeKernel::dequeue(v4l2_buffer& buffer) {
   buffer.flags = flags;
   buffer.sequence = sequence_;
   sequence_ += sequence_step;
-  buffer.timestamp.tv_sec = (due_us_ - 500) / 1'000'000;
-  buffer.timestamp.tv_usec = (due_us_ - 500) % 1'000'000;
+  const std::int64_t stamp_us = due_us_ - 500 + stamp_offset_us;
+  buffer.timestamp.tv_sec = stamp_us / 1'000'000;
+  buffer.timestamp.tv_usec = stamp_us % 1'000'000;
   const std::uint32_t filled = used != 0 ? used : image_bytes();
   (multi_planar ? buffer.m.planes[0].bytesused : buffer.bytesused) = filled;
   due_us_ += frame_us;

@@ -26,8 +26,9 @@ class FakeKernel final : public V4l2System {
   int open_error = 0;                     ///< of open()
   std::uint32_t buffers_given = 4;
   // The frames.
-  std::int64_t frame_us = 1000;  ///< between frames
-  std::uint32_t used = 0;        ///< bytes of a frame; 0 for all
+  std::int64_t frame_us = 1000;      ///< between frames
+  std::int64_t stamp_offset_us = 0;  ///< of the clock that frames are stamped by
+  std::uint32_t used = 0;            ///< bytes of a frame; 0 for all
   std::uint32_t flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
   std::uint32_t sequence_step = 1;
   std::uint32_t index_offset = 0;  ///< added to the index of a buffer, a lie

@@ -111,6 +111,28 @@ TEST(V4l2Source, TheFormatAskedForChoosesAmongTheNodesOfACamera) {
   rig.expect_refused(ErrorKind::device, "offers no INZI; it has YUYV, Z16", {"usb-0000:00:14.0-2", "INZI"});
 }
 
+TEST(V4l2Source, AFrameThatWasFetchedLateKeepsItsStampHoweverLate) {
+  Rig rig;
+  rig.start();
+  rig.next();
+  ASSERT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
+  rig.kernel.now_us += 15'000'000;  // the program was stopped, the kernel's buffers were full
+  rig.next();
+  ASSERT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
+  EXPECT_GT(rig.kernel.wall_us() - rig.item.frame.utime, 14'900'000);
+}
+
+TEST(V4l2Source, StampsOfAnotherClockAreNotTaken) {
+  Rig rig;
+  rig.start();
+  rig.kernel.stamp_offset_us = -900'000'000;  // the camera's own, which began a while ago
+  for (int i = 0; i < 3; ++i) {
+    rig.next();
+    ASSERT_EQ(rig.item.event, SourceEvent::frame) << rig.item.fault;
+    EXPECT_EQ(rig.item.frame.utime, rig.kernel.wall_us());
+  }
+}
+
 TEST(V4l2Source, WhatCannotBeUsedIsNamedWithItsMend) {
   Rig rig;
   rig.kernel.open_error = EACCES;
