@@ -84,11 +84,12 @@ void LiveSource::next(int timeout_ms, SourceItem& item) {
   if (!asked_) {
     // What lies between opening and the first question is not the device's fault.
     asked_ = true;
-    opened_ns_ = useful_ns_ = alive_ns_ = monotonic_ns();
+    opened_ns_ = useful_ns_ = alive_ns_ = looked_ns_ = monotonic_ns();
   }
   const std::int64_t until = monotonic_ns() + std::max(timeout_ms, 0) * kMillisecond;
   do {
     item.event = SourceEvent::timeout;
+    leave_out_pause();
     if (monotonic_ns() - alive_ns_ > nanoseconds(settings_.patience)) {
       const std::string last = reason_.empty() ? "no usable frame" : reason_;
       device_.reset();
@@ -104,6 +105,13 @@ void LiveSource::next(int timeout_ms, SourceItem& item) {
   } while (item.event == SourceEvent::timeout && item.fault.empty() && monotonic_ns() < until);
 }
 
+void LiveSource::leave_out_pause() {
+  const std::int64_t now = monotonic_ns(), pause = now - std::exchange(looked_ns_, now);
+  if (pause <= nanoseconds(settings_.most_pause)) return;
+  alive_ns_ += pause;
+  useful_ns_ += pause;
+}
+
 void LiveSource::receive(std::int64_t until_ns, SourceItem& item) {
   // No longer than to the moment at which silence means something.
   const std::int64_t since = last_frame_ns_ != 0 ? last_frame_ns_ : opened_ns_;
@@ -113,6 +121,7 @@ void LiveSource::receive(std::int64_t until_ns, SourceItem& item) {
   const auto wait_ms =
       static_cast<int>(std::clamp<std::int64_t>((wait + kMillisecond - 1) / kMillisecond, 0, 1000));
   device_->next(wait_ms, item);
+  leave_out_pause();
   const std::int64_t now = monotonic_ns();
   switch (item.event) {
     case SourceEvent::frame:
@@ -205,6 +214,7 @@ void LiveSource::try_to_open(std::int64_t until_ns, SourceItem& item) {
     sleep_until_ns(monotonic_ns() + wait);
   }
   if (monotonic_ns() >= next_try_ns_) attempt(item);
+  looked_ns_ = monotonic_ns();  // opening may take long, which is the device's
 }
 
 void LiveSource::attempt(SourceItem& item) {

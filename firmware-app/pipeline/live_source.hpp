@@ -25,6 +25,9 @@ struct LiveSettings {
   double first_frame = 3;                   ///< for the first frame after opening
   double most_stall = 1;    ///< before a stalled device is given up and opened again; at least 15 frame times
   double most_useless = 3;  ///< of frames that cannot be used before the device is opened again
+  /// A longer time in which nobody asked, or a device that was asked did not answer, is this program's: it
+  /// was stopped, or the machine stood still. It counts for neither `patience` nor `most_useless`.
+  double most_pause = 3;
 };
 
 /// absent → opening → streaming → stalled → lost → reopening, with growing pauses. Frames are numbered here,
@@ -51,6 +54,7 @@ class LiveSource final : public DepthSource {
 
  private:
   LiveSource(LiveSettings settings, std::unique_ptr<DepthSource> device);
+  void leave_out_pause();
   void receive(std::int64_t until_ns, SourceItem& item);
   void take(SourceItem& item, std::int64_t now);
   void watch_silence(std::int64_t now, SourceItem& item);
@@ -74,6 +78,7 @@ class LiveSource final : public DepthSource {
   std::int64_t useful_ns_ = 0;       // the latest moment that the stream was usable, or begun
   std::int64_t alive_ns_ = 0;        // as useful_ns_, but not begun anew by opening
   std::int64_t sound_ns_ = 0;        // the latest frame that was passed on
+  std::int64_t looked_ns_ = 0;       // when this program was last known to run
   std::int64_t next_try_ns_ = 0, pause_ns_ = kFirstPause;
   std::uint64_t arrivals_seen_ = 0;
   int attempts_ = 0;

@@ -24,6 +24,7 @@ struct Script {
   std::atomic<bool> plugged{true}, usable{true};
   std::atomic<int> openings{0}, open_now{0}, resets{0};
   std::atomic<int> width{64};
+  std::atomic<int> stands_still_ms{0};  ///< once, while it is asked, with the whole program
 };
 
 class Device final : public DepthSource {
@@ -44,6 +45,7 @@ class Device final : public DepthSource {
     using Stream = Script::Stream;
     item.fault.clear();
     item.event = SourceEvent::timeout;
+    sleep_until_ns(monotonic_ns() + script_.stands_still_ms.exchange(0) * kMillisecond);
     if (!script_.plugged || script_.stream == Stream::lost) {
       item.event = SourceEvent::lost;
       item.fault = "unplugged";
@@ -189,6 +191,29 @@ TEST(LiveSource, ASlowStreamIsPassedOnAndSaidToBeSlow) {
   rig.run(400);
   EXPECT_EQ(rig.source->monitor()->fault(), StreamFault::none);
   EXPECT_EQ(rig.source->monitor()->rate_share(), 1);
+}
+
+TEST(LiveSource, AProgramThatStoodStillDoesNotBlameTheDevice) {
+  for (const bool while_asked : {false, true}) {
+    Rig rig;
+    rig.settings.patience = rig.settings.most_useless = 0.5;
+    rig.settings.most_pause = 0.4;
+    rig.start();
+    rig.run(200);
+    rig.script.stream = Script::Stream::delayed;  // what lay in the buffers
+    if (while_asked)
+      rig.script.stands_still_ms = 1000;
+    else
+      sleep_until_ns(monotonic_ns() + 1000 * kMillisecond);
+    rig.source->next(20, rig.item);
+    EXPECT_EQ(rig.item.event, SourceEvent::bad_frame) << rig.item.fault;
+    rig.script.stream = Script::Stream::sound;
+    rig.frames = 0;
+    rig.run(200);
+    EXPECT_NE(rig.item.event, SourceEvent::lost) << rig.item.fault;
+    EXPECT_GT(rig.frames, 2);
+    EXPECT_EQ(rig.script.openings, 1) << "nothing was wrong with it";
+  }
 }
 
 TEST(LiveSource, IsBlindWhileNoSoundFrameComes) {
