@@ -45,4 +45,9 @@ const UsbDevice* find_at_place(std::span<const UsbDevice> devices, std::string_v
   return only(devices, [place](const UsbDevice& device) { return place.starts_with(ids_of(device)); });
 }
 
+const UsbDevice* find_idle_at_place(std::span<const UsbDevice> devices, std::string_view place) {
+  const UsbDevice* found = find_at_place(devices, place);
+  return found == nullptr || found->in_use ? nullptr : found;
+}
+
 }  // namespace pliant

@@ -17,4 +17,8 @@ namespace pliant {
 /// with a new one: the one with its ids, if there is only one. Null where it cannot be told.
 [[nodiscard]] const UsbDevice* find_at_place(std::span<const UsbDevice> devices, std::string_view place);
 
+/// The same, but null where a program has it. To be asked by who has let go of the device himself: the
+/// program is another one then, and the device, maybe, the only other of its kind.
+[[nodiscard]] const UsbDevice* find_idle_at_place(std::span<const UsbDevice> devices, std::string_view place);
+
 }  // namespace pliant

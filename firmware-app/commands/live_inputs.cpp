@@ -52,7 +52,7 @@ void attend_usb(LiveSettings& settings) {
     const Result<std::vector<UsbDevice>> devices = bus->devices();
     if (!devices) return;
     // Another program's camera is left alone: only what is certainly ours.
-    if (const UsbDevice* device = find_at_place(*devices, place)) static_cast<void>(bus->reset(*device));
+    if (const UsbDevice* device = find_idle_at_place(*devices, place)) static_cast<void>(bus->reset(*device));
   };
 }
 

@@ -106,6 +106,18 @@ TEST(UsbPlace, IsOneDeviceOrNone) {
   EXPECT_EQ(find_at_place({}, "1d27/0600@1/9"), nullptr);
 }
 
+TEST(UsbPlace, WhatAProgramHasIsNotResetInTheNameOfAnother) {
+  std::vector<UsbDevice> devices(2, device(0x1d27, 0x0600));
+  devices[1].address = 9;
+  devices[1].in_use = true;  // another tracker's
+  EXPECT_EQ(find_idle_at_place(devices, "1d27/0600@1/5"), devices.data());
+  const auto left = std::span(devices).last(1);  // ours was pulled out
+  ASSERT_EQ(find_at_place(left, "1d27/0600@1/5"), &devices[1]);
+  EXPECT_EQ(find_idle_at_place(left, "1d27/0600@1/5"), nullptr);
+  devices[1].in_use = false;
+  EXPECT_EQ(find_idle_at_place(left, "1d27/0600@1/5"), &devices[1]) << "ours, with a new address";
+}
+
 TEST(UsbReport, OtherDevicesAreNoConcernOfOurs) {
   const std::vector<UsbDevice> devices = {device(0x1d6b, 2), device(0x046d, 0xc52b)};
   EXPECT_TRUE(judge_usb_devices(devices, {}).empty());
