@@ -15,6 +15,19 @@ namespace pliant {
 
 namespace {
 
+/// The library's words with one blank where it has blanks, tabs and new lines, and none at the ends.
+std::string one_line(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  std::string line;
+  for (std::size_t at = text.find_first_not_of(kBlanks); at < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+    if (!line.empty()) line += ' ';
+    line += text.substr(at, end - at);
+    at = text.find_first_not_of(kBlanks, end);
+  }
+  return line;
+}
+
 const char* name_of_status(OniStatus status) {
   switch (status) {
     case ONI_STATUS_OK:
@@ -125,8 +138,7 @@ void OpenNi2Library::tell() const {
 
 Error OpenNi2Library::fault(std::string_view what, OniStatus status) const {
   const char* said = api_.extended_error();
-  std::string text = said == nullptr ? "" : said;
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  const std::string text = one_line(said == nullptr ? "" : said);
   const ErrorKind kind = status == ONI_STATUS_NO_DEVICE ? ErrorKind::absent : ErrorKind::device;
   return {kind, fmt::format("openni2: {}: {}", what,
                             text.empty() ? std::string(name_of_status(status)) : printable(text, 200))};

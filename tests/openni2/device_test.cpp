@@ -27,6 +27,17 @@ class Device : public testing::Test {
   SensorRig rig_;
 };
 
+TEST_F(Device, TheLibrarysWordsBecomeOneLine) {
+  OpenNi2Api api;
+  api.device_open = [](const char* /*uri*/, OniDeviceHandle* /*device*/) { return ONI_STATUS_ERROR; };
+  api.extended_error = [] { return "\tCould not open it:\r\n\t\tno answer!\n"; };
+  auto library = OpenNi2Library::start(nullptr, api);
+  ASSERT_TRUE(library) << library.error().message;
+  const auto source = open_openni2(*library, "", {});
+  ASSERT_FALSE(source);
+  EXPECT_EQ(source.error().message, "openni2: cannot open virtual/sensor@1/7: Could not open it: no answer!");
+}
+
 TEST_F(Device, StreamsItsFramesUnmirroredWithItsCamera) {
   auto source = open();
   ASSERT_TRUE(source) << source.error().message;
