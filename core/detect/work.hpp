@@ -17,6 +17,7 @@ inline constexpr std::uint64_t kNearest = 250;              // the nearest point
 inline constexpr double kCandidate = 7;                     // a point that might have been nearer
 inline constexpr std::uint64_t kThinned = 200;              // a reading put into its cell
 inline constexpr std::uint64_t kReading = 600;              // of the warp
+inline constexpr std::uint64_t kLimb = 40000000;            // of the warp: a limb in all its attitudes
 inline constexpr std::uint64_t kLattice = 2000;         // of a picture: a normal, its place in the sampling
 inline constexpr std::uint64_t kPoseVote = 5000;        // of the votes for a pose
 inline constexpr std::uint64_t kProbeStep = 90;         // of a step of a pose's alignment, a point

@@ -11,7 +11,7 @@ namespace pliant {
 
 void find_deformed(RegistrationState& s, InstanceBuffers& buffers, InstanceResult& instance) noexcept {
   const std::size_t n = s.model.size();
-  if (s.settings.warp) warp_cloud(s, CloudWarpSettings(), buffers);
+  if (s.settings.warp) warp_cloud(s, buffers);
   // Every point starts where the nearest region (along the model's surface) takes it.
   for (std::size_t i = 0; i < n; ++i)
     s.proposal[i] =

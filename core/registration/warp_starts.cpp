@@ -53,31 +53,29 @@ void find_homes(Warp& w) noexcept {
   }
 }
 
-std::size_t find_pulls(Warp& w) noexcept {
+void find_starts(Warp& w) noexcept {
   RegistrationState& s = w.s;
   const std::size_t count = std::min(s.posed_count, w.room.places.size());
   for (std::size_t k = 0; k < count; ++k) w.room.places[k] = s.posed[k].model;
   const double around = kAround * s.model.radius();
-  static_cast<void>(w.room.free_grid.build(w.room.places.first(count), 0.5 * around));
+  static_cast<void>(w.room.sample_grid.build(w.room.places.first(count), 0.5 * around));
   for (std::size_t p = 0; p < w.room.patches.count; ++p) w.room.borne[p] = 0;
-  std::size_t pulls = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t p = w.room.patches.patch_of[s.matches[k].model];
     if (w.room.rigid[p]) continue;
     const RigidTransform pose = pose_from_frames(s.posed[k]);
     const Vector3 own = to_vector(s.posed[k].model);
     std::uint32_t near = 0, agree = 0;
-    w.room.free_grid.visit_within(s.posed[k].model, static_cast<float>(around), kMostAround,
-                                  [&](std::uint32_t j, const Point3f& m, float /*square*/) {
-                                    if (j == k) return;
-                                    ++near;
-                                    const double limit =
-                                        match_tolerance(s) + kFrameError * (to_vector(m) - own).norm();
-                                    const Vector3 gap = pose * to_vector(m) - to_vector(s.posed[j].scene);
-                                    agree += gap.squaredNorm() < limit * limit ? 1U : 0U;
-                                  });
+    w.room.sample_grid.visit_within(s.posed[k].model, static_cast<float>(around), kMostAround,
+                                    [&](std::uint32_t j, const Point3f& m, float /*square*/) {
+                                      if (j == k) return;
+                                      ++near;
+                                      const double limit =
+                                          match_tolerance(s) + kFrameError * (to_vector(m) - own).norm();
+                                      const Vector3 gap = pose * to_vector(m) - to_vector(s.posed[j].scene);
+                                      agree += gap.squaredNorm() < limit * limit ? 1U : 0U;
+                                    });
     if (agree < kFewestAgree || static_cast<double>(agree) < kAgreeShare * near) continue;
-    w.room.pulls[pulls++] = static_cast<std::uint16_t>(k);
     if (agree <= w.room.borne[p]) continue;
     w.room.borne[p] = agree;
     w.room.pose[p] = pose;
@@ -97,7 +95,6 @@ std::size_t find_pulls(Warp& w) noexcept {
     }
     if (!changed) break;
   }
-  return pulls;
 }
 
 }  // namespace pliant

@@ -21,7 +21,7 @@ void find_homes(Warp& w) noexcept;
 
 /// Matches of points that may move, each borne out by its neighbours: the pose that its local frames propose
 /// brings most of the matches around it to their scene points too. A limb that bends is rigid over so short a
-/// way. Writes their numbers to room.pulls; returns how many. Their patches, and those beside, start there.
-[[nodiscard]] std::size_t find_pulls(Warp& w) noexcept;
+/// way. Their patches, and those beside, start there; room.borne: how many agree.
+void find_starts(Warp& w) noexcept;
 
 }  // namespace pliant
