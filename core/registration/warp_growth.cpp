@@ -9,9 +9,10 @@ namespace pliant {
 
 namespace {
 
-constexpr double kStarts = 0.6;   // of a patch's samples, shown where a region puts it: it starts settled
-constexpr double kSettles = 0.6;  // where the warp put it
-constexpr double kLoosens = 0.4;  // fewer: it is not any more
+constexpr double kStarts = 0.6;      // of a patch's samples, shown where a region puts it: it starts settled
+constexpr double kSettles = 0.6;     // where the warp put it
+constexpr std::uint32_t kBorne = 3;  // matches
+constexpr double kLoosens = 0.4;     // fewer: it is not any more
 // A region of interleaved points has slid through something of a like shape: of a true one, most points lie
 // in patches that are nearly all its own.
 constexpr double kOwnPatch = 0.75, kTrusted = 0.8;
@@ -43,23 +44,51 @@ std::array<bool, limits::kMaxRegions> trusted_regions(const WarpRoom& room) noex
   return trusted;
 }
 
-/// What regions explain, or matches bear out, is settled where the scene says so; so is what lies within a
-/// region, where the scene's normals may be wrong.
+/// Whether a settled patch beside `p` puts the border between them where `p` does.
+bool hangs_on_settled(const WarpRoom& room, std::size_t p) noexcept {
+  const double square = room.patches.radius * room.patches.radius;
+  for (std::size_t k = 0; k < room.patches.border_count; ++k) {
+    const PatchBorder& border = room.patches.borders[k];
+    if (border.a != p && border.b != p) continue;
+    if (!room.settled[border.a == p ? border.b : border.a]) continue;
+    if ((room.pose[border.a] * border.centre - room.pose[border.b] * border.centre).squaredNorm() < square)
+      return true;
+  }
+  return false;
+}
+
+/// What regions explain is settled where the scene says so; so is what lies within a region, where the
+/// scene's normals may be wrong, and what matches bear out if it hangs on the rest: alone, it may have slid
+/// along something of a like shape.
 void start(WarpSamples& samples) noexcept {
   WarpRoom& room = samples.room();
   const PatchTables& patches = room.patches;
   samples.place();
   samples.find_facing(all_of(patches));
   const auto trusted = trusted_regions(room);
+  std::array<bool, kMaxPatches> borne{};
   for (std::size_t p = 0; p < patches.count; ++p) {
-    const bool said = room.rigid[p] || 2 * room.hold[p] >= patches.sizes[p] || room.borne[p] >= 3;
+    const bool explained = room.rigid[p] || 2 * room.hold[p] >= patches.sizes[p];
     const bool shown = room.asked[p] > 0 && room.close[p] >= kStarts * room.asked[p];
     bool within = room.rigid[p];
     patches.neighbours[p].for_each(
         [&](std::size_t q) { within = within && room.rigid[q] && room.home[q] == room.home[p]; });
-    room.settled[p] = ((said && shown) || within) && trusted[static_cast<std::size_t>(room.home[p])];
+    const bool believed = trusted[static_cast<std::size_t>(room.home[p])];
+    room.settled[p] = ((explained && shown) || within) && believed;
     room.fixed[p] = room.rigid[p] && room.settled[p];
+    borne[p] = !room.settled[p] && shown && room.borne[p] >= kBorne;
   }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t p = 0; p < patches.count; ++p) {
+      if (!borne[p] || !hangs_on_settled(room, p)) continue;
+      room.settled[p] = changed = true;
+      borne[p] = false;
+    }
+  }
+  for (std::size_t p = 0; p < patches.count; ++p)
+    if (borne[p])
+      room.pose[p] = samples.warp().buffers.regions[static_cast<std::size_t>(room.home[p])].transform;
 }
 
 void activate(WarpRoom& room) noexcept {
