@@ -40,6 +40,19 @@ std::span<const Point3f> some_readings(std::span<Point3f> points) noexcept {
   return points.first(kept);
 }
 
+/// No instance holds any of it.
+void free_scene(RegistrationState& s) noexcept {
+  for (std::size_t i = 0; i < s.base_count; ++i) s.base_taken[i] = 0;
+  for (std::size_t i = 0; i < s.working_count; ++i) s.working_taken[i] = 0;
+}
+
+/// The share of the model that the regions of a chain explain.
+double explained_share(const RegistrationState& s, const InstanceBuffers& buffers) noexcept {
+  const auto explained = std::count_if(buffers.labels.begin(), buffers.labels.end(),
+                                       [](std::int8_t label) noexcept { return label >= 0; });
+  return static_cast<double>(explained) / static_cast<double>(s.model.size());
+}
+
 }  // namespace
 
 std::size_t CloudRegistration::workspace_bytes(const ModelView& model, std::size_t scene_points,
@@ -89,20 +102,22 @@ bool CloudRegistration::inspect(std::span<const Point3f> scene) noexcept {
 void CloudRegistration::prepare() noexcept {
   RegistrationState& s = *state_;
   find_normals(s);
-  for (std::size_t i = 0; i < s.base_count; ++i) s.base_taken[i] = 0;
-  for (std::size_t i = 0; i < s.working_count; ++i) s.working_taken[i] = 0;
+  free_scene(s);
   done(RegistrationStage::normals);
 }
 
-void CloudRegistration::complete(std::size_t number, const RigidTransform& pose, double score) noexcept {
+bool CloudRegistration::complete(std::size_t number, const RigidTransform& pose, double score,
+                                 double least_explained) noexcept {
   RegistrationState& s = *state_;
   InstanceResult& instance = s.instances[number];
   instance = InstanceResult();
   instance.score = score;
   build_chain(s, pose, s.buffers[number], instance);
   done(RegistrationStage::chain);
+  if (explained_share(s, s.buffers[number]) < least_explained) return false;
   find_deformed(s, s.buffers[number], instance);
   done(RegistrationStage::deformed);
+  return true;
 }
 
 const RegistrationResult& CloudRegistration::finish(std::size_t found) noexcept {
@@ -154,8 +169,13 @@ const RegistrationResult& CloudRegistration::register_cloud(std::span<const Poin
       RigidTransform pose;
       const double score = find_instance(s, pose);
       done(RegistrationStage::grouping);
-      if (score < kConvincingShare) break;
-      complete(found++, pose, score);
+      const bool doubtful = score < kConvincingShare;
+      if (score < kDoubtfulShare || (doubtful && found > 0)) break;
+      if (!complete(found, pose, score, doubtful ? kExplainedShare : 0)) {
+        free_scene(s);
+        break;
+      }
+      ++found;
     }
     wanted = static_cast<std::uint32_t>(std::min(1.5625 * wanted, 65535.0));
   }
@@ -172,7 +192,8 @@ std::size_t CloudRegistration::search_one_view(const DepthFrame& frame, const In
   const std::size_t count =
       search_picture(s, frame, camera, sensor, observer_, {seen.data(), s.settings.max_instances});
   done(RegistrationStage::grouping);
-  for (std::size_t k = 0; k < count; ++k) complete(k, scene_from_camera * seen[k].pose, seen[k].score);
+  for (std::size_t k = 0; k < count; ++k)
+    static_cast<void>(complete(k, scene_from_camera * seen[k].pose, seen[k].score));
   return count;
 }
 
@@ -232,7 +253,7 @@ const RegistrationResult& CloudRegistration::register_depth(const DepthFrame& fr
   prepare();
   s.posed_count = 0;  // pictures are not matched by groups
   s.key_count = keys;
-  for (std::size_t k = 0; k < count; ++k) complete(k, seen[k].pose, seen[k].score);
+  for (std::size_t k = 0; k < count; ++k) static_cast<void>(complete(k, seen[k].pose, seen[k].score));
   return finish(count);
 }
 

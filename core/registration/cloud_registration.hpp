@@ -141,8 +141,10 @@ class CloudRegistration {
   [[nodiscard]] bool inspect(std::span<const Point3f> scene) noexcept;
   /// Normals of the thinned scene, of which nothing is explained yet.
   void prepare() noexcept;
-  /// Chain and deformed points of one instance from its base's pose (scene <- model).
-  void complete(std::size_t number, const RigidTransform& pose, double score) noexcept;
+  /// Chain and deformed points of one instance from its base's pose (scene <- model). False, and no more than
+  /// the chain, where that explains less than `least_explained` of the model.
+  [[nodiscard]] bool complete(std::size_t number, const RigidTransform& pose, double score,
+                              double least_explained = 0) noexcept;
   [[nodiscard]] const RegistrationResult& finish(std::size_t found) noexcept;
   /// The picture's readings as a cloud, NaN where there is none; with instances only what stands around them.
   void read_points(const DepthFrame& frame, const Intrinsics& camera, const SensorDescription& sensor,

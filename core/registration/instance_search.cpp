@@ -108,7 +108,7 @@ double find_instance(RegistrationState& s, RigidTransform& pose) noexcept {
   }
   if (s.settings.frame_hypotheses && best.score < 0.3) try_single_frames(s, left, best);
   if (best.score < 0) return best.score;
-  if (best.score >= kConvincingShare && best.score < kCertainShare && has_twin(s, best)) return -1;
+  if (best.score >= kDoubtfulShare && best.score < kCertainShare && has_twin(s, best)) return -1;
   pose = best.pose;
   refine(s, s.prefix.first(std::min(kFinePoints, s.model.size())), 0, pose);
   return best.score;

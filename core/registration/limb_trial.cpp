@@ -9,8 +9,7 @@ namespace {
 constexpr std::size_t kFewSamples = 100;  // for what many poses are asked
 constexpr int kAlignSteps = 5;
 constexpr int kBendRounds = 8;
-constexpr double kSoft = 0.3;          // of the stiffness: a joint bends far within few edges
-constexpr double kLeastFacing = 0.25;  // of the samples: fewer that face the eye are no evidence
+constexpr double kSoft = 0.3;  // of the stiffness: a joint bends far within few edges
 
 /// Calls visit(border, from, to) for the borders between settled patches and the limb.
 template <typename Visit>
@@ -60,24 +59,20 @@ std::span<const std::uint16_t> LimbTrial::few() const noexcept {
 
 std::uint32_t LimbTrial::target_of(const WarpSamples::Placed& sample, double gate, float least_alike,
                                    float& square) const noexcept {
-  const bool known = samples_.warp().s.one_view;  // which way the scene's normals point
-  return samples_.target_of(sample, gate, least_alike, known ? 1.0F : 0.0F, square,
+  return samples_.target_of(sample, gate, least_alike, 0, square,
                             [&](std::uint8_t owner) noexcept { return limb_.has(owner); });
 }
 
 LimbEvidence LimbTrial::evidence() const noexcept {
   LimbEvidence found;
-  double asked = 0;
   for (const std::uint16_t k : std::span(own_).first(count_)) {
     const WarpSamples::Placed sample =
         samples_.placed(k, FastTransform(samples_.room().pose[samples_.patch_of(k)]));
-    if (!samples_.may_be_seen(sample)) continue;
-    ++asked;
     float square = 0;
     const std::uint32_t target = target_of(sample, 1.5 * samples_.reach(), WarpSamples::kMuchAlike, square);
     found.samples += target != PointGrid::kNone && samples_.shows(sample, target) ? 1 : 0;
   }
-  found.share = found.samples / std::max({1.0, asked, kLeastFacing * static_cast<double>(count_)});
+  found.share = found.samples / static_cast<double>(std::max<std::size_t>(1, count_));
   return found;
 }
 

@@ -47,6 +47,7 @@ class LimbTrial {
   [[nodiscard]] double tear() const noexcept;
 
  private:
+  /// Facing either way: a thin limb's normals may be turned.
   [[nodiscard]] std::uint32_t target_of(const WarpSamples::Placed& sample, double gate, float least_alike,
                                         float& square) const noexcept;
   [[nodiscard]] std::span<const std::uint16_t> few() const noexcept;

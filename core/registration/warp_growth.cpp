@@ -173,7 +173,8 @@ void grow_settled(WarpSamples& samples, const WarpStiffness& stiffness) noexcept
     still = settled > most ? 0 : still + 1;
     most = std::max(most, settled);
     if (still < kStill) continue;
-    if (settled == room.patches.count || turns++ == kMostTurns) return;
+    // From one place, what is hidden would be taken for a limb that went elsewhere.
+    if (settled == room.patches.count || samples.warp().s.one_view || turns++ == kMostTurns) return;
     samples.find_owners();
     if (!turn_limbs(samples, stiffness, memory)) return;
     most = 0;
