@@ -131,7 +131,7 @@ void LimbTrial::bend(const RigidTransform& pose, double first, double last) noex
                   room.system.own(p), room.system.force(p));
     }
     add_springs(room, stiffness_, {.share = kSoft, .limb = &limb_});
-    if (!move_patches(room)) return;
+    if (move_patches(room) < 0) return;
   }
 }
 

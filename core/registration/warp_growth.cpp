@@ -22,6 +22,7 @@ constexpr double kWidest = 4, kNarrow = 2.5;      // of the spacing
 constexpr double kSoft = 0.3;                     // of the stiffness, while patches settle
 constexpr double kFollowing = 20;                 // times the stiffness of what only follows
 constexpr double kVerySoft = 0.02, kFarther = 5;  // while it relaxes
+constexpr double kAtRest = 0.05;                  // of the spacing: a fifth of what sampling leaves
 constexpr int kRounds = 40, kStill = 3, kMostTurns = 6, kRelaxRounds = 30;
 
 PatchSet all_of(const PatchTables& patches) noexcept {
@@ -168,7 +169,7 @@ void grow_settled(WarpSamples& samples, const WarpStiffness& stiffness) noexcept
     read(samples);
     add_springs(room, stiffness, {.share = kSoft, .following = kFollowing});
     add_ties(room, stiffness);
-    if (!move_patches(room)) return;
+    if (move_patches(room) < 0) return;
     const std::size_t settled = settle(samples);
     still = settled > most ? 0 : still + 1;
     most = std::max(most, settled);
@@ -194,7 +195,7 @@ void relax_settled(WarpSamples& samples, const WarpStiffness& stiffness) noexcep
     for (std::size_t p = 0; p < room.patches.count; ++p) room.active[p] = !room.fixed[p] && room.settled[p];
     read(samples);
     add_springs(room, stiffness, {.share = kVerySoft, .limit = kFarther, .following = kFollowing});
-    if (!move_patches(room)) return;
+    if (move_patches(room) < kAtRest * samples.warp().s.spacing) return;  // or singular
   }
 }
 

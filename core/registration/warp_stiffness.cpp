@@ -1,5 +1,7 @@
 #include "core/registration/warp_stiffness.hpp"
 
+#include <algorithm>
+
 namespace pliant {
 
 namespace {
@@ -36,15 +38,17 @@ void add_springs(WarpRoom& room, const WarpStiffness& stiffness, const WarpHold&
   }
 }
 
-bool move_patches(WarpRoom& room) noexcept {
-  if (!room.system.solve(kIterations)) return false;
+double move_patches(WarpRoom& room) noexcept {
+  if (!room.system.solve(kIterations)) return -1;
+  double farthest = 0;
   for (std::size_t p = 0; p < room.patches.count; ++p) {
     const Vector6& x = room.system.motion(p);
     if (room.system.holds(p) || !(x.squaredNorm() < 1.0)) continue;  // also for not-a-number
     room.pose[p] = motion_about(x, room.pose[p] * room.patches.centres[p]) * room.pose[p];
     room.pose[p].rotation = orthonormalised(room.pose[p].rotation);
+    farthest = std::max(farthest, x.tail<3>().norm() + room.patches.radius * x.head<3>().norm());
   }
-  return true;
+  return farthest;
 }
 
 }  // namespace pliant

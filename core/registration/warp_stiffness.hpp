@@ -28,7 +28,8 @@ struct WarpHold {
 /// surface would be: what is torn far pulls no more.
 void add_springs(WarpRoom& room, const WarpStiffness& stiffness, const WarpHold& hold) noexcept;
 
-/// Solves the system and moves the patches that are not held. False when it is singular.
-bool move_patches(WarpRoom& room) noexcept;
+/// Solves the system and moves the patches that are not held. How far the farthest went, metres; below 0 when
+/// the system is singular.
+double move_patches(WarpRoom& room) noexcept;
 
 }  // namespace pliant
