@@ -23,7 +23,7 @@ constexpr double kSettled = 0.4;    // of a patch's samples
 constexpr int kAround = 2;          // rings of patches that a piece may take along
 constexpr double kStillOpen = 0.3;  // of a limb's patches, those not settled
 
-// Half the tangents of turns by 25° to 125°, as quaternions want them.
+// Tangents of half the turns, by 25° to 125°.
 constexpr std::array<double, 5> kHalfTangents = {0.2217, 0.4663, 0.7673, 1.1918, 1.9210};
 
 struct Attitude {
