@@ -67,7 +67,7 @@ std::vector<Point3f> cloud_of(const std::vector<std::uint16_t>& picture, const I
   return points;
 }
 
-void print_views(const Mesh& target, const std::vector<Mesh>& others, int views,
+void print_views(const ScaledMesh& target, const std::vector<ScaledMesh>& others, int views,
                  const RegistrationSettings& settings) {
   const BuiltFromFile model(geometry_of(target));
   const Intrinsics camera = structure_camera();
@@ -99,8 +99,8 @@ int compare(int argc, char** argv) {
     std::fprintf(stderr, "ablation: %s\n", file.error().message.c_str());
     return 2;
   }
-  const Mesh target = scaled(*file, kSize);
-  std::vector<Mesh> others = {ball(0.05), ball(0.09)};
+  const ScaledMesh target = scaled(*file, kSize);
+  std::vector<ScaledMesh> others = {ball(0.05), ball(0.09)};
   for (int k = 4; k < argc; ++k)
     if (const Result<Geometry> other = read_geometry(argv[k]); other) others.push_back(scaled(*other, 0.25));
   const Variant variants[] = {{"everything", nullptr},

@@ -17,8 +17,8 @@ constexpr int kViews = 7;
 
 /// A closed surface of the given distance from the middle in each direction.
 template <typename Radius>
-Mesh star(double size, Radius&& radius) {
-  Mesh mesh = ball(1);
+ScaledMesh star(double size, Radius&& radius) {
+  ScaledMesh mesh = ball(1);
   Geometry geometry = geometry_of(mesh);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Vector3 d = mesh.vertices[i].normalized();
@@ -27,12 +27,12 @@ Mesh star(double size, Radius&& radius) {
   return scaled(geometry, size);
 }
 
-Mesh target() {
+ScaledMesh target() {
   return star(kSize, testing::bumpy_radius);
 }
 
 /// Things of about the object's size with lumps elsewhere.
-std::vector<Mesh> others() {
+std::vector<ScaledMesh> others() {
   return {
       ball(0.05), ball(0.15),
       star(kSize, [](const Vector3& d) { return 0.09 + 0.03 * std::sin(5 * d.x()) * std::cos(4 * d.y()); }),
@@ -47,7 +47,7 @@ class PictureRun {
         run_(model_.view, table_size(camera_.width, camera_.height)) {}
 
   [[nodiscard]] bool ready() const { return model_.good && run_.fault == nullptr; }
-  [[nodiscard]] const Mesh& mesh() const { return target_; }
+  [[nodiscard]] const ScaledMesh& mesh() const { return target_; }
 
   /// Work of a registration; `found` says how it ended.
   std::uint64_t work_of(const char* name, const std::vector<std::uint16_t>& picture, bool& found) {
@@ -62,7 +62,7 @@ class PictureRun {
 
   /// The median work of views in which the object is found, and the most of the same views without it.
   void usual(std::uint64_t& middle, std::uint64_t& most_empty) {
-    const std::vector<Mesh> things = others();
+    const std::vector<ScaledMesh> things = others();
     ViewMaker maker(target_, things);
     std::vector<std::uint64_t> works;
     most_empty = 0;
@@ -83,13 +83,13 @@ class PictureRun {
 
  private:
   Intrinsics camera_ = structure_camera();
-  Mesh target_;
+  ScaledMesh target_;
   BuiltFromFile model_;
   ReadyRegistration run_;
 };
 
 /// Balls in rows before a wall, or copies of the object.
-std::vector<std::uint16_t> picture_of_many(const Mesh& mesh, bool turned) {
+std::vector<std::uint16_t> picture_of_many(const ScaledMesh& mesh, bool turned) {
   const Intrinsics camera = structure_camera();
   simulated::DisparityImage image(camera);
   std::mt19937 random(5);

@@ -61,7 +61,7 @@ int look(int argc, char** argv) {
       std::fprintf(stderr, "like_shapes: %s\n", file.error().message.c_str());
       return 2;
     }
-    const Mesh target = scaled(*file, kSize);
+    const ScaledMesh target = scaled(*file, kSize);
     const BuiltFromFile model(geometry_of(target));
     if (!model.good) {
       std::fprintf(stderr, "like_shapes: %s makes no model\n", argv[k]);

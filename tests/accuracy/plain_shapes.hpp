@@ -16,7 +16,7 @@ inline const char* name_of(PlainShape shape) {
 }
 
 /// Half of the target's extents along its principal axes, the longest first.
-inline Vector3 half_extents(const Mesh& mesh) {
+inline Vector3 half_extents(const ScaledMesh& mesh) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Vector3& v : mesh.vertices) mean += Eigen::Vector3d(v.x(), v.y(), v.z());
@@ -40,9 +40,9 @@ inline Vector3 half_extents(const Mesh& mesh) {
 }
 
 /// A tube along x, closed, of 1 around and 1 either way.
-inline Mesh unit_cylinder() {
+inline ScaledMesh unit_cylinder() {
   constexpr int kSides = 48;
-  Mesh mesh;
+  ScaledMesh mesh;
   for (int end = -1; end <= 1; end += 2)
     for (int j = 0; j < kSides; ++j)
       mesh.vertices.emplace_back(end, std::cos(2 * M_PI * j / kSides), std::sin(2 * M_PI * j / kSides));
@@ -58,8 +58,8 @@ inline Mesh unit_cylinder() {
   return mesh;
 }
 
-inline Mesh unit_box() {
-  Mesh mesh;
+inline ScaledMesh unit_box() {
+  ScaledMesh mesh;
   for (int k = 0; k < 8; ++k)
     mesh.vertices.emplace_back((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1);
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
@@ -67,10 +67,10 @@ inline Mesh unit_box() {
   return mesh;
 }
 
-inline Mesh plain_mesh(PlainShape shape, const Vector3& half) {
-  Mesh mesh = shape == PlainShape::cylinder                            ? unit_cylinder()
-              : shape == PlainShape::box || shape == PlainShape::plate ? unit_box()
-                                                                       : ball(1);
+inline ScaledMesh plain_mesh(PlainShape shape, const Vector3& half) {
+  ScaledMesh mesh = shape == PlainShape::cylinder                            ? unit_cylinder()
+                    : shape == PlainShape::box || shape == PlainShape::plate ? unit_box()
+                                                                             : ball(1);
   const double round = std::cbrt(half.x() * half.y() * half.z()), across = std::sqrt(half.y() * half.z());
   for (Vector3& v : mesh.vertices) {
     const Vector3 scale = shape == PlainShape::ball       ? Vector3(round, round, round)
@@ -83,13 +83,13 @@ inline Mesh plain_mesh(PlainShape shape, const Vector3& half) {
 }
 
 /// A picture of such a thing, of 0.7 to 1.2 times the target's extents, turned at random before a wall.
-inline std::vector<std::uint16_t> picture_like(const Mesh& target, PlainShape shape, std::uint64_t seed,
+inline std::vector<std::uint16_t> picture_like(const ScaledMesh& target, PlainShape shape, std::uint64_t seed,
                                                simulated::DisparityImage& image) {
   const Intrinsics camera = structure_camera();
   std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
   std::uniform_real_distribution<double> unit(0, 1);
   const double scale = 0.7 + 0.5 * unit(random), z = 0.5 + 0.7 * unit(random);
-  const Mesh mesh = plain_mesh(shape, half_extents(target) * scale);
+  const ScaledMesh mesh = plain_mesh(shape, half_extents(target) * scale);
   RigidTransform pose;
   pose.rotation = random_rotation(random);
   pose.translation = Vector3(0.2 * (unit(random) - 0.5) * z, 0.2 * (unit(random) - 0.5) * z, z);

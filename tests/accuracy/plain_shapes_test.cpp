@@ -10,8 +10,8 @@ namespace pliant {
 namespace {
 
 /// The lumpy object, 30 cm across, its lumps lower by `share`.
-Mesh lumpy(double share) {
-  const Mesh unit = ball(1);
+ScaledMesh lumpy(double share) {
+  const ScaledMesh unit = ball(1);
   Geometry geometry = geometry_of(unit);
   for (std::size_t i = 0; i < unit.vertices.size(); ++i) {
     const Vector3 d = unit.vertices[i].normalized();
@@ -24,7 +24,7 @@ TEST(PlainShapes, AreNotTakenForAnObjectOfTheirSize) {
   const Intrinsics camera = structure_camera();
   simulated::DisparityImage image(camera);
   for (const double share : {1.0, 0.5}) {
-    const Mesh target = lumpy(share);
+    const ScaledMesh target = lumpy(share);
     const BuiltFromFile model(geometry_of(target));
     ASSERT_TRUE(model.good);
     ReadyRegistration run(model.view, table_size(camera.width, camera.height));
@@ -41,8 +41,8 @@ TEST(PlainShapes, AreNotTakenForAnObjectOfTheirSize) {
 }
 
 TEST(PlainShapes, TheObjectItselfIsFoundAmongBallsOfItsSize) {
-  const Mesh target = lumpy(0.5);
-  const std::vector<Mesh> others = {ball(0.05), ball(0.09), ball(0.1)};
+  const ScaledMesh target = lumpy(0.5);
+  const std::vector<ScaledMesh> others = {ball(0.05), ball(0.09), ball(0.1)};
   const BuiltFromFile model(geometry_of(target));
   ASSERT_TRUE(model.good);
   const Intrinsics camera = structure_camera();

@@ -21,9 +21,9 @@ int look(int argc, char** argv) {
     std::fprintf(stderr, "random_views: %s\n", file.error().message.c_str());
     return 2;
   }
-  const Mesh target = scaled(*file, kSize);
+  const ScaledMesh target = scaled(*file, kSize);
   const BuiltFromFile model(geometry_of(target));
-  std::vector<Mesh> others = {ball(0.05), ball(0.09)};
+  std::vector<ScaledMesh> others = {ball(0.05), ball(0.09)};
   for (int k = 4; k < argc; ++k) {
     const Result<Geometry> other = read_geometry(argv[k]);
     if (!other) {

@@ -25,12 +25,12 @@ inline Intrinsics structure_camera() {
   return camera;
 }
 
-struct Mesh {
+struct ScaledMesh {
   std::vector<Vector3> vertices;  // around the middle, metres
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-inline Mesh scaled(const Geometry& geometry, double diagonal) {
+inline ScaledMesh scaled(const Geometry& geometry, double diagonal) {
   Vector3 low(1e9, 1e9, 1e9), high(-1e9, -1e9, -1e9);
   for (const Point3f& p : geometry.vertices)
     for (int k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ inline Mesh scaled(const Geometry& geometry, double diagonal) {
     }
   const double scale = diagonal / (high - low).norm();
   const Vector3 middle = (high + low) / 2;
-  Mesh mesh;
+  ScaledMesh mesh;
   for (const Point3f& p : geometry.vertices)
     mesh.vertices.emplace_back(scale * (static_cast<double>(p.x) - middle.x()),
                                scale * (static_cast<double>(p.y) - middle.y()),
@@ -49,9 +49,9 @@ inline Mesh scaled(const Geometry& geometry, double diagonal) {
   return mesh;
 }
 
-inline Mesh ball(double radius) {
+inline ScaledMesh ball(double radius) {
   constexpr int kRings = 24, kSides = 32;
-  Mesh mesh;
+  ScaledMesh mesh;
   for (int i = 0; i <= kRings; ++i)
     for (int j = 0; j < kSides; ++j) {
       const double a = M_PI * i / kRings, b = 2 * M_PI * j / kSides;
@@ -79,7 +79,7 @@ inline Matrix3 random_rotation(std::mt19937& random) {
   return rotation_from_quaternion({q[0], q[1], q[2], q[3]});
 }
 
-inline std::vector<Vector3> placed(const Mesh& mesh, const RigidTransform& pose) {
+inline std::vector<Vector3> placed(const ScaledMesh& mesh, const RigidTransform& pose) {
   std::vector<Vector3> out;
   out.reserve(mesh.vertices.size());
   for (const Vector3& v : mesh.vertices) out.push_back(pose * v);
@@ -95,7 +95,8 @@ struct View {
 
 class ViewMaker {
  public:
-  ViewMaker(const Mesh& target, const std::vector<Mesh>& others) : target_(target), others_(others) {}
+  ViewMaker(const ScaledMesh& target, const std::vector<ScaledMesh>& others)
+      : target_(target), others_(others) {}
 
   /// One view; false when too little of the target is in sight or it fills the picture.
   bool make(std::uint64_t seed, View& view) {
@@ -114,7 +115,7 @@ class ViewMaker {
     background_.draw_plane(Vector3(0, std::cos(lean), std::sin(lean)),
                            (z + 0.25) * std::sin(lean) + 0.2 * std::cos(lean), everywhere, nullptr);
     for (int k = 0; k < 6; ++k) {
-      const Mesh& mesh = others_[random() % others_.size()];
+      const ScaledMesh& mesh = others_[random() % others_.size()];
       RigidTransform pose;
       pose.rotation = random_rotation(random);
       const double depth = z - 0.15 + 0.4 * unit(random);
@@ -150,14 +151,14 @@ class ViewMaker {
  private:
   static bool everywhere(const Vector3&, const void*) { return true; }
 
-  const Mesh& target_;
-  const std::vector<Mesh>& others_;
+  const ScaledMesh& target_;
+  const std::vector<ScaledMesh>& others_;
   Intrinsics camera_ = structure_camera();
   simulated::DisparityImage scene_{camera_}, background_{camera_};
 };
 
 /// The mesh's vertices and triangles as a file would give them.
-inline Geometry geometry_of(const Mesh& mesh) {
+inline Geometry geometry_of(const ScaledMesh& mesh) {
   Geometry geometry;
   for (const Vector3& v : mesh.vertices) geometry.vertices.push_back(to_point(v));
   geometry.triangles = mesh.triangles;
