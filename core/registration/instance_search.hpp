@@ -6,7 +6,7 @@
 namespace pliant {
 
 /// A pose must have this share of the model's points on the scene's surface, with its normals. Absent objects
-/// reach 0.36; what is seen from one side only is judged by free space instead.
+/// reach 0.38; what is seen from one side only is judged by free space instead.
 inline constexpr double kConvincingShare = 0.42;
 /// A pose between the two is believed where its chain of regions explains kExplainedShare of the model: half
 /// of a wolf that bends everywhere is shown by any one pose. The chains of absent objects reach 0.16.

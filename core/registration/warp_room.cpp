@@ -3,7 +3,6 @@
 namespace pliant {
 
 void WarpRoom::lay_out(Workspace& workspace, std::size_t model_points, std::size_t scene_points) noexcept {
-  samples = workspace.take<std::uint16_t>(model_points);
   places = workspace.take<Point3f>(model_points);
   normals = workspace.take<Point3f>(model_points);
   targets = workspace.take<Point3f>(scene_points);

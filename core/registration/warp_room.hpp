@@ -31,9 +31,8 @@ struct WarpRoom {
   std::array<std::uint32_t, kMaxPatches> asked{}, close{};  ///< its samples, and those that the scene shows
   std::array<RigidTransform, kMaxPatches> kept, best;       ///< poses before a trial, and of the best one
 
-  std::span<std::uint16_t> samples;  ///< points of the model, and where they are
-  std::span<Point3f> places, normals;
-  std::span<Point3f> targets;  ///< points of the scene, and which patch's samples they lie on
+  std::span<Point3f> places, normals;  ///< of the samples, scene frame
+  std::span<Point3f> targets;          ///< points of the scene, and which patch's samples they lie on
   std::span<Normal16> target_normals;
   std::span<std::uint8_t> owner;
   PointGrid sample_grid, target_grid;

@@ -24,7 +24,6 @@ Point3f unit(const Normal16& n) noexcept {
 WarpSamples::WarpSamples(Warp& warp) noexcept : w_(warp) {
   const RegistrationState& s = w_.s;
   count_ = std::min(kMostSamples, s.model.size());
-  for (std::size_t k = 0; k < count_; ++k) w_.room.samples[k] = static_cast<std::uint16_t>(k);
   take_targets();
   w_.room.facing.fill(1);
 }
@@ -129,9 +128,12 @@ void WarpSamples::find_facing(const PatchSet& patches) noexcept {
   });
 }
 
-void add_reading(const Vector3& at, const Vector3& to, const Vector3& normal, double weight,
-                 const Vector3& centre, Symmetric6& a, Vector6& b) noexcept {
-  const Vector3 arm = at - centre, gap = to - at;
+void add_reading(const WarpSamples& samples, const Point3f& place, std::uint32_t target, float square,
+                 double gate, const Vector3& centre, Symmetric6& a, Vector6& b) noexcept {
+  const WarpRoom& room = samples.room();
+  const double left = std::max(0.0, 1 - static_cast<double>(square) / (gate * gate)), weight = left * left;
+  const Vector3 at = to_vector(place), normal = to_vector(unit(room.target_normals[target]));
+  const Vector3 arm = at - centre, gap = to_vector(room.targets[target]) - at;
   Vector6 row;
   row.head<3>() = arm.cross(normal);
   row.tail<3>() = normal;
@@ -145,14 +147,6 @@ void add_reading(const Vector3& at, const Vector3& to, const Vector3& normal, do
   a.add_point_spring(across, arm);
   b.head<3>() += across * arm.cross(gap);
   b.tail<3>() += across * gap;
-}
-
-void add_reading(const WarpSamples& samples, const Point3f& at, std::uint32_t target, float square,
-                 double gate, const Vector3& centre, Symmetric6& a, Vector6& b) noexcept {
-  const WarpRoom& room = samples.room();
-  const double left = std::max(0.0, 1 - static_cast<double>(square) / (gate * gate));
-  add_reading(to_vector(at), to_vector(room.targets[target]), to_vector(unit(room.target_normals[target])),
-              left * left, centre, a, b);
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 // scene's points with their normals, each owned by the settled patch that lies on it.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,8 +16,8 @@ class WarpSamples {
   /// Cosine between normals of what may belong together, and of what surely does.
   static constexpr float kAlike = 0.5F, kMuchAlike = 0.7F;
 
-  /// Takes the samples (the first points of the model are spread evenly) and the targets: what no other
-  /// instance holds. Without targets there is nothing to do.
+  /// Takes the targets, what no other instance holds. The samples are the first points of the model, which
+  /// are spread evenly. Without targets there is nothing to do.
   explicit WarpSamples(Warp& warp) noexcept;
 
   [[nodiscard]] Warp& warp() const noexcept { return w_; }
@@ -24,7 +25,7 @@ class WarpSamples {
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
   [[nodiscard]] std::size_t target_count() const noexcept { return targets_; }
   [[nodiscard]] std::size_t patch_of(std::size_t sample) const noexcept {
-    return w_.room.patches.patch_of[w_.room.samples[sample]];
+    return w_.room.patches.patch_of[sample];
   }
   /// Distance between neighbouring samples, or targets, whichever are farther apart, metres.
   [[nodiscard]] double reach() const noexcept { return reach_; }
@@ -34,8 +35,7 @@ class WarpSamples {
     Point3f at, normal;
   };
   [[nodiscard]] Placed placed(std::size_t sample, const FastTransform& pose) const noexcept {
-    const std::size_t point = w_.room.samples[sample];
-    return {pose.point(w_.s.model.positions()[point]), pose.direction(w_.s.model.normals()[point])};
+    return {pose.point(w_.s.model.positions()[sample]), pose.direction(w_.s.model.normals()[sample])};
   }
   /// Places all samples by their patches' poses: room.places and room.normals.
   void place() noexcept;
@@ -63,8 +63,6 @@ class WarpSamples {
   }
   /// Whether `target` shows the surface at the sample: as near to its plane as noise and sampling leave it.
   [[nodiscard]] bool shows(const Placed& sample, std::uint32_t target) const noexcept;
-  /// A cloud taken from one place shows only what faces it.
-  [[nodiscard]] bool may_be_seen(const Placed& sample) const noexcept;
 
   /// Counts of each patch, where the samples are placed: room.asked and room.close.
   void count_close() noexcept;
@@ -74,18 +72,18 @@ class WarpSamples {
 
  private:
   void take_targets() noexcept;
+  /// A cloud taken from one place shows only what faces it.
+  [[nodiscard]] bool may_be_seen(const Placed& sample) const noexcept;
 
   Warp& w_;
   std::size_t count_ = 0, targets_ = 0;
   double reach_ = 0;
 };
 
-/// A reading of a patch: the point `at` should come to `to`, by all of `weight` along `normal` and a little
-/// across. `centre`: about which the patch turns.
-void add_reading(const Vector3& at, const Vector3& to, const Vector3& normal, double weight,
-                 const Vector3& centre, Symmetric6& a, Vector6& b) noexcept;
-/// The reading of a sample by a target at a squared distance, whose weight (Tukey's) falls to none at `gate`.
-void add_reading(const WarpSamples& samples, const Point3f& at, std::uint32_t target, float square,
+/// The reading of a sample at `place` by a target at a squared distance: it should come there along the
+/// target's normal and a little across. Its weight (Tukey's) falls to none at `gate`, metres. `centre`: about
+/// which the patch turns.
+void add_reading(const WarpSamples& samples, const Point3f& place, std::uint32_t target, float square,
                  double gate, const Vector3& centre, Symmetric6& a, Vector6& b) noexcept;
 
 }  // namespace pliant

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
-#include <sstream>
 
 #include <Eigen/Geometry>
 
@@ -141,17 +140,9 @@ TEST_P(LargeDeformation, LeavesPointsWhereTheyWent) {
   const RegistrationResult& result = run.registration.register_cloud(scene->vertices);
   ASSERT_EQ(result.outcome, RegistrationOutcome::found);
   Placement placement(model.view, result.instances[0]);
-  std::ifstream in(folder / "scene_gt.csv");
-  std::string line;
-  std::getline(in, line);
-  for (std::size_t k = 0; std::getline(in, line) && k < clean->vertices.size(); ++k) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream fields(line);
-    int index = 0, label = 0;
-    Point3f rest;
-    fields >> index >> label >> rest.x >> rest.y >> rest.z;
-    placement.check(rest, clean->vertices[k]);
-  }
+  const std::vector<TruePoint> truth = read_true_points(folder / "scene_gt.csv");
+  ASSERT_EQ(truth.size(), clean->vertices.size());
+  for (std::size_t k = 0; k < truth.size(); ++k) placement.check(truth[k].rest, clean->vertices[k]);
   EXPECT_GT(placement.share(), GetParam().least_share);
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,28 @@ struct ReadyRegistration {
   CloudRegistration registration;
   const char* fault;
 };
+
+/// What is true of a scene point: the nearest model vertex, its label, where it lies on the undeformed model.
+struct TruePoint {
+  int index = -1, label = 0;
+  Point3f rest;
+};
+
+/// One a scene point.
+inline std::vector<TruePoint> read_true_points(const std::filesystem::path& file) {
+  std::vector<TruePoint> points;
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);  // the columns' names
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    TruePoint point;
+    fields >> point.index >> point.label >> point.rest.x >> point.rest.y >> point.rest.z;
+    points.push_back(point);
+  }
+  return points;
+}
 
 /// The parts' true poses (scene <- model).
 inline std::vector<RigidTransform> read_true_poses(const std::filesystem::path& file) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <sstream>
 
 #include <Eigen/Geometry>
 
@@ -54,15 +53,10 @@ BentFigure bend(const std::filesystem::path& folder, double waist_angle, double 
     return base * waist.by(at_waist) * elbow.by(at_elbow);
   };
   figure.poses = {base, posed(waist_angle, 0), posed(waist_angle, elbow_angle)};
-  std::ifstream in(folder / "scene_gt.csv");
-  std::string line;
-  std::getline(in, line);
-  for (std::size_t k = 0; std::getline(in, line) && k < scene->vertices.size(); ++k) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream fields(line);
-    std::size_t index = 0;
-    int label = 0;
-    fields >> index >> label;
+  const std::vector<TruePoint> true_points = read_true_points(folder / "scene_gt.csv");
+  for (std::size_t k = 0; k < true_points.size() && k < scene->vertices.size(); ++k) {
+    const int label = true_points[k].label;
+    const auto index = static_cast<std::size_t>(true_points[k].index);
     if (index >= figure.model.size()) continue;
     const Vector3 p = to_vector(figure.model[index]), q = to_vector(scene->vertices[k]);
     RigidTransform pose = label <= 3 && label >= 1 ? figure.poses[static_cast<std::size_t>(label - 1)] : base;

@@ -40,6 +40,11 @@ class Service : public CommandTest {
         at("c.toml"),
         "source = \"simulated:cushion?frames=100000&width=160&height=120\"\n[lcm]\nurl = \"none\"\n" + text);
   }
+  /// Has the program read its config again, as `systemctl reload` does.
+  [[nodiscard]] bool reloads() {
+    kill(process_, SIGHUP);
+    return manager_.hears("RELOADING=1", 30'000) && manager_.hears("READY=1", 30'000);
+  }
   /// Ends the program by SIGTERM; the seconds that it took.
   double end(Ended& ended) {
     const auto before = std::chrono::steady_clock::now();
@@ -123,12 +128,9 @@ TEST_F(Service, AnotherModelUnderTheSameNameIsTold) {
   start({"--config", at("c.toml"), "--model", model, "--pace", "realtime"});
   ASSERT_TRUE(manager_.hears("READY=1", 30'000));
   ASSERT_EQ(run_pliant({"model", "build", "simulated:cushion", "-o", model}).code, 0);
-  kill(process_, SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
+  ASSERT_TRUE(reloads());
   EXPECT_TRUE(manager_.hears("  tracking", 30'000));
-  kill(process_, SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
-  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(reloads());
   Ended ended;
   EXPECT_LT(end(ended), kEndsWithin);
   EXPECT_EQ(ended.code, 0) << ended.err;
@@ -148,13 +150,9 @@ TEST_F(Service, AnotherSensorDescriptionUnderTheSameNameIsTakenUp) {
   ASSERT_TRUE(manager_.hears("READY=1", 30'000));
   ASSERT_TRUE(manager_.hears("  tracking", 20'000));
   describe(0.002);
-  kill(process_, SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
-  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(reloads());
   EXPECT_TRUE(manager_.hears("  tracking", 30'000));
-  kill(process_, SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
-  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(reloads());
   Ended ended;
   EXPECT_LT(end(ended), kEndsWithin);
   EXPECT_EQ(ended.code, 0) << ended.err;
@@ -171,9 +169,7 @@ TEST_F(Service, AValidConfigIsTakenUpWithoutLosingTheObject) {
   ASSERT_TRUE(manager_.hears("READY=1", 30'000));
   ASSERT_TRUE(manager_.hears("  tracking", 20'000));
   write_config("[track]\nbudget_ms = 50\n");
-  kill(process_, SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
-  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(reloads());
   // The very first frames of the new run are tracked: none is spent on searching.
   std::string line;
   for (int i = 0; i < 200 && line.find("STATUS=frame ") == std::string::npos; ++i)
@@ -191,9 +187,7 @@ TEST_F(Service, AWrongConfigIsRefusedAndTheOldOneStays) {
   start({"--config", at("c.toml"), "--pace", "realtime"});
   ASSERT_TRUE(manager_.hears("READY=1", 30'000));
   write_config("[track]\nbudget = 50\n");
-  kill(process_, SIGHUP);
-  ASSERT_TRUE(manager_.hears("RELOADING=1", 30'000));
-  ASSERT_TRUE(manager_.hears("READY=1", 30'000));
+  ASSERT_TRUE(reloads());
   for (int ping = 0; ping < 3; ++ping) EXPECT_TRUE(manager_.hears("WATCHDOG=1", 10'000));
   Ended ended;
   EXPECT_LT(end(ended), kEndsWithin);
