@@ -14,10 +14,12 @@ struct ContourReach {
   std::int32_t behind = 0;  ///< readings farther behind a point than this are not the object's, 1/16 mm
 };
 
+/// Cosine of the flattest view that still is an outline, Q14.
+inline constexpr std::int32_t kCos80 = 2845;
+
 /// Does the surface at `point` with `normal` (unit, Q14) turn away from the camera just there, within 10°?
 /// Its point lies on the outline, but for 1.5 % of the surface's radius of curvature.
 [[nodiscard]] inline bool on_rim(const IntPoint& point, const IntPoint& normal) noexcept {
-  constexpr std::int32_t kCos80 = 2845;  // Q14
   const std::int32_t towards =
       -(normal.x * (point.x >> 4) + normal.y * (point.y >> 4) + normal.z * (point.z >> 4));
   return std::abs(towards / 16384) <= ((kCos80 * (point.z >> 4)) >> 14);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/track/associate.hpp"
+#include "core/track/contour.hpp"
 #include "core/track/model_tables.hpp"
 
 namespace pliant {
@@ -14,6 +16,10 @@ enum class Side : std::int32_t {
   rim,    ///< on the outline: on_rim()
   facing  ///< faces_camera() within 75°
 };
+
+[[nodiscard]] inline Side side_of(const IntPoint& point, const IntPoint& normal) noexcept {
+  return faces_camera(point, normal, kCos75) ? Side::facing : on_rim(point, normal) ? Side::rim : Side::away;
+}
 
 /// Points and normals in arrays, from one of them on.
 struct PointColumns {
@@ -39,6 +45,16 @@ struct PlacedPoints {
 
   /// The first `count` of the columns, at most kMost; whole blocks (PatchPoints) are the quickest.
   void place(const PointColumns& from, std::size_t count, const FixedPose& pose) noexcept;
+  /// Point k as another pose has it.
+  void put(std::size_t k, const IntPoint& point, const IntPoint& normal) noexcept {
+    x[k] = point.x;
+    y[k] = point.y;
+    z[k] = point.z;
+    nx[k] = normal.x;
+    ny[k] = normal.y;
+    nz[k] = normal.z;
+    side[k] = side_of(point, normal);
+  }
   [[nodiscard]] IntPoint point(std::size_t k) const noexcept { return {x[k], y[k], z[k]}; }
   [[nodiscard]] IntPoint normal(std::size_t k) const noexcept { return {nx[k], ny[k], nz[k]}; }
 };

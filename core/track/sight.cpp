@@ -7,15 +7,6 @@
 
 namespace pliant {
 
-namespace {
-
-/// Where the surface is steep, a reading within the limit of a point lies farther off in depth.
-bool is_near(std::uint16_t z8, const IntPoint& point, std::int32_t limit) noexcept {
-  return z8 != 0 && std::abs(2 * z8 - point.z) <= std::min(4 * limit, kFarthestReading);
-}
-
-}  // namespace
-
 Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) const noexcept {
   Look out;
   out.normal = normal;
@@ -24,13 +15,19 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
   if (!faces_camera(point, normal, 0) || !projector_.project(point, u, v)) return out;
   out.facing = true;
   const std::int32_t limit = tolerance_.deformed(point.z);
+  // Where the surface is steep, a reading within the limit of a point lies farther off in depth.
+  const std::int32_t deepest = std::min(4 * limit, kFarthestReading);
+  const auto is_near = [&](std::uint16_t z8) { return z8 != 0 && std::abs(2 * z8 - point.z) <= deepest; };
+  const std::uint16_t centre = surface_.depth_at(u, v);
   int best_u = u, best_v = v;
-  bool agrees = agrees_at(u, v, limit, point, normal, out.residual);
+  bool agrees = is_near(centre) && agrees_with(u, v, centre, limit, point, normal, out.residual);
   if (!agrees)
     for (int vv = v - 1; vv <= v + 1; ++vv)
       for (int uu = u - 1; uu <= u + 1; ++uu) {
+        const std::uint16_t z8 = surface_.depth_at(uu, vv);
         std::int32_t residual = 0;
-        if ((uu == u && vv == v) || !agrees_at(uu, vv, limit, point, normal, residual) ||
+        if (!is_near(z8) || (uu == u && vv == v) ||
+            !agrees_with(uu, vv, z8, limit, point, normal, residual) ||
             (agrees && std::abs(residual) >= std::abs(out.residual)))
           continue;
         agrees = true;
@@ -43,7 +40,6 @@ Sighting::Look Sighting::look(const IntPoint& point, const IntPoint& normal) con
     out.match = best_v * surface_.width() + best_u;
     return out;
   }
-  const std::uint16_t centre = surface_.depth_at(u, v);
   if (centre == 0) return out;
   const IntPoint q = surface_.vertex(u, v, centre);
   out.match = v * surface_.width() + u;
@@ -69,15 +65,10 @@ bool Sighting::look_beside(std::int32_t reach, Look& look) const noexcept {
   return true;
 }
 
-bool Sighting::agrees_at(int u, int v, std::int32_t limit, const IntPoint& point, const IntPoint& normal,
-                         std::int32_t& residual) const noexcept {
-  const std::uint16_t z8 = surface_.depth_at(u, v);
-  if (!is_near(z8, point, limit)) return false;
-  const std::int32_t off = plane_distance(surface_.vertex(u, v, z8), point, normal) >> 4;
-  if (std::abs(off) > limit || !surface_.faces(u, v, Surface::normal_step(z8, spacing_), normal))
-    return false;
-  residual = off;
-  return true;
+bool Sighting::agrees_with(int u, int v, std::uint16_t z8, std::int32_t limit, const IntPoint& point,
+                           const IntPoint& normal, std::int32_t& residual) const noexcept {
+  residual = plane_distance(surface_.vertex(u, v, z8), point, normal) >> 4;
+  return std::abs(residual) <= limit && surface_.faces(u, v, Surface::normal_step(z8, spacing_), normal);
 }
 
 }  // namespace pliant

@@ -68,9 +68,9 @@ class Sighting {
   [[nodiscard]] const Tolerance& tolerance() const noexcept { return tolerance_; }
 
  private:
-  /// A pixel of the picture, or beside it, where there is no reading.
-  bool agrees_at(int u, int v, std::int32_t limit, const IntPoint& point, const IntPoint& normal,
-                 std::int32_t& residual) const noexcept;
+  /// A reading, by its pixel and depth, near the point.
+  bool agrees_with(int u, int v, std::uint16_t z8, std::int32_t limit, const IntPoint& point,
+                   const IntPoint& normal, std::int32_t& residual) const noexcept;
 
   const ModelTables& model_;
   const Surface& surface_;
