@@ -135,6 +135,7 @@ const char* Tracker::start(const ModelView& model, const Intrinsics& camera, con
   s->tolerance = {&s->surface, s->tables.spacing};
   s->patches.start(s->model);
   s->points.reset();
+  s->points.add_rows = add_moment_rows(simd_body(settings.kernels));
   s->detector.start(s->model, camera, sensor, settings.kernels);
   state_ = s;
   return nullptr;

@@ -36,9 +36,9 @@ struct PatchLook {
 
 /// How well readings fit a patch.
 struct PatchFit {
-  double weight = 0;  ///< of readings
-  double square = 0;  ///< mean residual squared, metres squared
-  double gain = 0;    ///< by how much the patch's own motion would lower the sum of squares
+  double weight = 0;    ///< of readings
+  double square = 0;    ///< mean residual squared, metres squared
+  bool pulled = false;  ///< its own motion would lower the sum of squares by much
 };
 
 /// Of all readings that a patch could have, the share that its region's pull is worth for a patch that its
@@ -51,9 +51,10 @@ inline constexpr double kHoldShare = 0.5;
 void gather_readings(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
                      PatchWarp& warp) noexcept;
 
-/// The same, and how well they fit.
-void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen,
-                  PatchWarp& warp, std::array<PatchFit, kMaxPatches>& fits) noexcept;
+/// The same into `moments`, and how well they fit: does a patch's own motion lower the sum of squares by more
+/// than `much`?
+void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen, double much,
+                  PatchWarp& warp, PatchMoments& moments, std::array<PatchFit, kMaxPatches>& fits) noexcept;
 
 /// Adds a patch's readings to its normal equations: radians and metres about its centre.
 void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept;

@@ -117,12 +117,13 @@ constexpr double kByChanceFreely = 24;
 /// that are off their region or are pulled off it.
 ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const PointState& points,
                           double noise, PatchWarp& warp) noexcept {
-  const double smoothed = kSmoothedNoise * noise, near = kAtHome * smoothed;
+  const double smoothed = kSmoothedNoise * noise, near = kAtHome * smoothed,
+               much = kByChanceFreely * noise * noise;
   const std::size_t count = look.patches.count;
   std::array<PatchFit, kMaxPatches> here, home;
   ChosenPatches all, astray{};
   all.fill(true);
-  measure_fits(look, points, all, warp, here);
+  measure_fits(look, points, all, much, warp, warp.moments, here);
   home = here;
   const std::array<RigidTransform, kMaxPatches> own = warp.pose;
   for (std::size_t p = 0; p < count; ++p) {
@@ -130,7 +131,7 @@ ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const
     astray[p] = patch_deviation(look.patches, warp, p, region) > near * near;
     warp.pose[p] = region;
   }
-  measure_fits(look, points, astray, warp, home);
+  measure_fits(look, points, astray, much, warp, warp.home_moments, home);
   std::array<bool, kMaxPatches> fits{};
   for (std::size_t p = 0; p < count; ++p) {
     const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
@@ -143,9 +144,12 @@ ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const
     look.patches.neighbours[p].for_each([&](std::size_t q) {
       if (warp.held[p] && warp.home[q] == warp.home[p] && here[q].weight > 0) warp.held[p] = fits[q];
     });
-    if (!warp.held[p]) warp.pose[p] = own[p];
+    if (!warp.held[p])
+      warp.pose[p] = own[p];
+    else if (astray[p])
+      warp.moments[p] = warp.home_moments[p];
     const PatchFit& now = warp.held[p] ? home[p] : here[p];
-    astray[p] = (astray[p] && !warp.held[p]) || now.gain > kByChanceFreely * noise * noise;
+    astray[p] = (astray[p] && !warp.held[p]) || now.pulled;
   }
   return astray;
 }
@@ -181,12 +185,15 @@ constexpr double kNothing = 0.05;
 /// A patch that a round moved by less than this share of the noise has come to rest for this frame.
 constexpr double kAtRest = 0.15;
 
+int aside_step(const Projector& projector, const ReadingGates& gates, std::int32_t z) noexcept {
+  return std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
+}
+
 /// One balance of readings, anchors and springs of the patches that still move; those that came to rest do
 /// so no more. False when there is no balance.
-bool balance(const PatchLook& look, const RegionSet& regions, const PointState& points, ChosenPatches& moving,
-             const Material& material, double limit, int iterations, PatchWarp& warp) noexcept {
+bool balance(const PatchLook& look, const RegionSet& regions, ChosenPatches& moving, const Material& material,
+             double limit, int iterations, PatchWarp& warp) noexcept {
   const std::size_t count = look.patches.count;
-  gather_readings(look, points, moving, warp);
   warp.system.clear(count);
   std::size_t moving_count = 0;
   for (std::size_t p = 0; p < count; ++p) {
@@ -253,14 +260,18 @@ void warp_patches(const ModelTables& model, const PatchTables& patches, const Su
   ReadingGates& gates = look.gates;
   gates = {std::min(settings.inward, kFarthestReading), std::min(settings.outward, kFarthestReading),
            surface.pixel_span(model.spacing / kUnitsPerMetre)};
+  look.step = aside_step(projector, gates, z);
   const std::array<RigidTransform, kMaxPatches> before = warp.pose;
   const ChosenPatches astray = return_home(look, regions, points, noise, warp);
   const ChosenPatches moving = moving_patches(patches, warp, astray);
   ChosenPatches active = moving;
   for (int round = 0; round < settings.rounds; ++round) {
-    look.step = std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
-    if (!balance(look, regions, points, active, material, limit, settings.iterations, warp)) break;
-    gates.narrow(2 * tolerance.deformed(z));
+    if (round > 0) {
+      gates.narrow(2 * tolerance.deformed(z));
+      look.step = aside_step(projector, gates, z);
+      gather_readings(look, points, active, warp);
+    }
+    if (!balance(look, regions, active, material, limit, settings.iterations, warp)) break;
   }
   for (std::size_t p = 0; p < patches.count; ++p)
     if (moving[p])

@@ -20,6 +20,8 @@ struct WarpSettings {
   std::int32_t outward = 0;  ///< how far before it: beyond, it is something else in front, 1/16 mm
 };
 
+using PatchMoments = std::array<PlaneMoments, kMaxPatches>;
+
 /// The state of the warp, kept from frame to frame, and its scratch.
 struct PatchWarp {
   std::array<RigidTransform, kMaxPatches> pose;  ///< camera <- model, of each patch
@@ -31,7 +33,8 @@ struct PatchWarp {
   std::array<StepMemory, kMaxPatches> steps;  ///< of each patch
 
   // scratch
-  std::array<PlaneMoments, kMaxPatches> moments;
+  PatchMoments moments;       ///< of the readings, where the warp has the patches
+  PatchMoments home_moments;  ///< where their regions put them
   std::array<FixedPose, kMaxPatches> fixed;
   std::array<IntPoint, kMaxPatches> centre;
   ElasticSystem system;

@@ -17,16 +17,17 @@ constexpr std::int32_t kFullWeight = 256;  // Q8
 
 /// The weighted rows of region `k` about `centre`: the integer kernel of the step, on its own so that it can
 /// be looked at.
-[[gnu::noinline]] PlaneMoments region_moments(std::span<const Correspondence> all, std::int8_t k,
-                                              const IntPoint& centre, std::int32_t limit,
-                                              bool robust) noexcept {
+[[gnu::noinline]] PlaneMoments region_moments(const PointState& points, std::int8_t k, const IntPoint& centre,
+                                              std::int32_t limit, bool robust) noexcept {
   PlaneMoments moments;
-  for (const Correspondence& c : all) {
+  MomentRowBuffer rows(points.add_rows, moments);
+  for (const Correspondence& c : points.correspondences.first(points.correspondence_count)) {
     if (c.region != k) continue;
     const std::int32_t w = robust ? tukey_weight(c.residual, limit) : kFullWeight;
     if (w == 0) continue;
-    add_plane_row(moments, c.point, {c.nx, c.ny, c.nz}, c.residual, w, centre);
+    rows.add(moment_row(c.point, {c.nx, c.ny, c.nz}, c.residual, w, centre));
   }
+  rows.flush();
   return moments;
 }
 
@@ -53,9 +54,9 @@ void add_joint(const Joint& joint, const RigidTransform& pose, const Vector3& ce
 
 void align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
            const PointState& points, RegionSet& regions) noexcept {
-  const auto all = points.correspondences.first(points.correspondence_count);
   std::array<ResidualSpread, limits::kMaxRegions> spreads{};
-  for (const Correspondence& c : all) spreads[static_cast<std::size_t>(c.region)].add(c.point, c.residual);
+  for (const Correspondence& c : points.correspondences.first(points.correspondence_count))
+    spreads[static_cast<std::size_t>(c.region)].add(c.point, c.residual);
 
   for (std::size_t k = 0; k < regions.size(); ++k) {
     TrackedRegion& region = regions[k];
@@ -71,7 +72,7 @@ void align(const Surface& surface, const AlignSettings& settings, const Joints& 
         std::clamp((region.scale * 300) >> 6, narrowest, std::max(settings.widest, narrowest)) * 16;
 
     const PlaneMoments moments =
-        region_moments(all, static_cast<std::int8_t>(k), centre, limit, settings.robust);
+        region_moments(points, static_cast<std::int8_t>(k), centre, limit, settings.robust);
     if (moments.rows < kFewestCorrespondences) continue;
 
     PlaneEquations equations = plane_equations(moments);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/camera/surface.hpp"
+#include "core/fixed/moment_rows.hpp"
 #include "core/geometry/vector6.hpp"
 #include "core/limits.hpp"
 #include "core/track/model_tables.hpp"
@@ -84,6 +85,7 @@ struct PointState {
   std::span<std::uint16_t> queue;  ///< scratch: breadth-first search
   std::span<Correspondence> correspondences;
   std::size_t correspondence_count = 0;
+  AddMomentRows add_rows = add_moment_rows_scalar;  ///< body of the kernel for sums over points
   std::int32_t frames = 0;  ///< since the object was taken up, up to one more than kMisfitFirstFrames
 
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
