@@ -15,8 +15,8 @@ namespace {
 struct Plan {
   RegionPoses poses;
   std::array<std::size_t, limits::kMaxRegions> sizes{};  // of the sampling, by region
-  std::size_t size = 0;
-  std::int32_t gate = 0;  // 1/16 mm, at most kFarthestReading
+  std::size_t size = 0;                                  // the largest of them
+  std::int32_t gate = 0;                                 // 1/16 mm, at most kFarthestReading
   PixelSpan spacing;
 
   [[nodiscard]] AsideReach aside_at(const Projector& projector, std::int32_t z) const noexcept {
@@ -35,44 +35,67 @@ Correspondence correspondence(const IntPoint& p, const IntPoint& n, std::size_t 
           static_cast<std::int8_t>(region)};
 }
 
-/// The integer kernel, on its own so that it can be looked at.
+/// The correspondence of point `i` at `p` with normal `n`, which faces the camera or is on its region's
+/// outline, if it has one. The base has readings enough without what edges tell.
+inline bool find_correspondence(const Surface& surface, const Projector& projector, const Plan& plan,
+                                std::size_t i, std::size_t region, const IntPoint& p, const IntPoint& n,
+                                Side side, Correspondence& found) noexcept {
+  if (side == Side::rim) {
+    std::int32_t distance = 0;
+    if (!find_contour(surface, projector, {plan.gate, plan.gate}, p, n, distance)) return false;
+    found = correspondence(p, n, i, distance * 16, region);
+    return true;
+  }
+  int u = 0, v = 0;
+  if (!projector.project(p, u, v)) return false;
+  const std::uint16_t z8 = surface.depth_at(u, v);
+  if (z8 == 0 || 2 * z8 - p.z > plan.gate) {
+    Aside aside;
+    if (region == 0 || !find_aside(surface, plan.aside_at(projector, p.z), u, v, p, n, aside)) return false;
+    found = correspondence(p, aside.direction, i, aside.distance * 16, region);
+    return true;
+  }
+  if (p.z - 2 * z8 > plan.gate) return false;
+  const std::int32_t residual = plane_distance(surface.vertex(u, v, z8), p, n);
+  if (std::abs(residual) > plan.gate * 16 || !surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n))
+    return false;
+  found = correspondence(p, n, i, residual, region);
+  return true;
+}
+
+/// The integer kernel, on its own so that it can be looked at. Patch by patch: most points of one have one
+/// home, and stand beside each other in the picture.
 [[gnu::noinline]] std::size_t associate_points(const ModelTables& model, const Surface& surface,
                                                const Projector& projector, const Plan& plan,
                                                PointState& points) noexcept {
+  const PatchPoints& by_patch = model.by_patch;
   std::size_t count = 0;
-  PlacedPoints based;  // under the base's pose: most points are the base's
-  for (std::size_t first = 0; first < plan.size; first += PlacedPoints::kMost) {
-    const std::size_t end = std::min(first + PlacedPoints::kMost, plan.size);
-    if (first < plan.sizes[0]) based.place({model, first}, end - first, plan.poses[0]);
-    for (std::size_t i = first; i < end; ++i) {
-      const auto k = static_cast<std::size_t>(points.home[i]);
-      if (i >= plan.sizes[k] || points.evidence[i] >= kEvidenceDeformed) continue;
-      if (k == 0 && based.side[i - first] != Side::facing) continue;
-      const IntPoint n =
-          k == 0 ? based.normal(i - first) : plan.poses[k].direction(model.nx[i], model.ny[i], model.nz[i]);
-      const IntPoint p =
-          k == 0 ? based.point(i - first) : plan.poses[k].point(model.x[i], model.y[i], model.z[i]);
-      if (k != 0 && !faces_camera(p, n, kCos75)) {
-        std::int32_t distance = 0;
-        if (on_rim(p, n) && find_contour(surface, projector, {plan.gate, plan.gate}, p, n, distance))
-          points.correspondences[count++] = correspondence(p, n, i, distance * 16, k);
-        continue;
+  PlacedPoints placed;
+  for (std::size_t p = 0; p < by_patch.begin.size(); ++p) {
+    const std::size_t begin = by_patch.begin[p],
+                      end = by_patch.below(plan.size, begin, begin + by_patch.count[p]);
+    if (begin == end) continue;
+    const auto lead = static_cast<std::size_t>(points.home[by_patch.index[begin]]);
+    for (std::size_t first = begin; first < end; first += PlacedPoints::kMost) {
+      const std::size_t most = std::min(first + PlacedPoints::kMost, end);
+      placed.place({by_patch, first},
+                   PatchPoints::filled_up(by_patch.below(plan.sizes[lead], first, most) - first),
+                   plan.poses[lead]);
+      for (std::size_t at = first; at < most; ++at) {
+        const std::size_t i = by_patch.index[at], k = at - first;
+        const auto region = static_cast<std::size_t>(points.home[i]);
+        if (i >= plan.sizes[region] || points.evidence[i] >= kEvidenceDeformed) continue;
+        if (region != lead) {
+          const FixedPose& pose = plan.poses[region];
+          placed.put(k, pose.point(model.x[i], model.y[i], model.z[i]),
+                     pose.direction(model.nx[i], model.ny[i], model.nz[i]));
+        }
+        const Side side = placed.side[k];
+        if (side == Side::away || (region == 0 && side == Side::rim)) continue;
+        if (find_correspondence(surface, projector, plan, i, region, placed.point(k), placed.normal(k), side,
+                                points.correspondences[count]))
+          ++count;
       }
-      int u = 0, v = 0;
-      if (!projector.project(p, u, v)) continue;
-      const std::uint16_t z8 = surface.depth_at(u, v);
-      if (z8 == 0 || 2 * z8 - p.z > plan.gate) {
-        Aside aside;
-        if (k != 0 && find_aside(surface, plan.aside_at(projector, p.z), u, v, p, n, aside))
-          points.correspondences[count++] = correspondence(p, aside.direction, i, aside.distance * 16, k);
-        continue;
-      }
-      if (p.z - 2 * z8 > plan.gate) continue;
-      const IntPoint q = surface.vertex(u, v, z8);
-      const std::int32_t residual = plane_distance(q, p, n);
-      if (std::abs(residual) > plan.gate * 16) continue;
-      if (!surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n)) continue;
-      points.correspondences[count++] = correspondence(p, n, i, residual, k);
     }
   }
   return count;
@@ -84,10 +107,15 @@ void associate(const ModelTables& model, const Surface& surface, const Projector
                const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept {
   Plan plan;
   plan.poses = fixed_poses(regions, model.centre);
-  plan.size = std::min(settings.points, model.size);
+  const std::size_t wanted = std::min(settings.points, model.size);
   for (const std::int8_t home : points.home) ++plan.sizes[static_cast<std::size_t>(home)];
-  for (std::size_t& size : plan.sizes)
-    size = size <= kEnoughOfRegion ? plan.size : std::min(plan.size, model.size * kEnoughOfRegion / size);
+  for (std::size_t& size : plan.sizes) {
+    if (size > kEnoughOfRegion)
+      size = std::min(wanted, model.size * kEnoughOfRegion / size);
+    else if (size > 0)
+      size = wanted;
+    plan.size = std::max(plan.size, size);
+  }
   plan.gate = std::min(settings.gate, kFarthestReading);
   plan.spacing = surface.pixel_span(model.spacing / kUnitsPerMetre);
   points.correspondence_count = associate_points(model, surface, projector, plan, points);

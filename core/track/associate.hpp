@@ -18,12 +18,11 @@ struct AssociateSettings {
   std::int32_t gate = 0;   ///< readings farther than this from the point are not taken, 1/16 mm
 };
 
-/// Fills `points.correspondences` in the order of the model's points. Where the camera sees through a point
-/// of a region that is not the base, the nearest reading beside it pulls: a small part slides along itself
-/// otherwise. The base has readings enough, and edges are noisier than surfaces. Points that face away
-/// (beyond 75° from the line of sight), but for those on the outline of such a region, which follow it
-/// (contour.hpp), and those that count as deformed, are left out; readings whose
-/// surface faces another way are not taken.
+/// Fills `points.correspondences`, patch by patch. Where the camera sees through a point of a region that is
+/// not the base, the nearest reading beside it pulls: a small part slides along itself otherwise. The base has
+/// readings enough, and edges are noisier than surfaces. Points that face away (beyond 75° from the line of
+/// sight), but for those on the outline of such a region, which follow it (contour.hpp), and those that count
+/// as deformed, are left out; readings whose surface faces another way are not taken.
 void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
                const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept;
 

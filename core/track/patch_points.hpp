@@ -1,6 +1,7 @@
 // The model's points ordered for kernels that work patch by patch.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,11 @@ struct PatchPoints {
   /// So many points with what fills up their last block.
   [[nodiscard]] static constexpr std::size_t filled_up(std::size_t points) noexcept {
     return (points + kBlock - 1) / kBlock * kBlock;
+  }
+  /// Where, in [from, to) of one patch, the first `size` points of the model end.
+  [[nodiscard]] std::size_t below(std::size_t size, std::size_t from, std::size_t to) const noexcept {
+    const std::span<const std::uint16_t> own = index.subspan(from, to - from);
+    return from + static_cast<std::size_t>(std::lower_bound(own.begin(), own.end(), size) - own.begin());
   }
   void lay_out(Workspace& workspace, std::size_t points) noexcept;
   /// From the tables that the model itself fills.

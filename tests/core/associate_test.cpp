@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -48,17 +49,43 @@ TEST_F(Associate, FindsTheVisibleSurfaceAtTheTruePose) {
   EXPECT_LT(std::sqrt(square / static_cast<double>(count)), 1.2);  // millimetres, the picture's own rounding
 }
 
-TEST_F(Associate, LooksAtAPrefixInTheModelsOrder) {
+TEST_F(Associate, LooksAtAPrefixPatchByPatch) {
   const std::size_t all = run(20 * kUnitsPerMillimetre);
   const std::size_t some = run(20 * kUnitsPerMillimetre, 500);
   EXPECT_LT(some, all);
   EXPECT_GT(some, 50U);
   for (std::size_t i = 0; i < some; ++i) {
-    EXPECT_LT(scene().points.correspondences[i].index, 500);
-    if (i > 0) {
-      EXPECT_GT(scene().points.correspondences[i].index, scene().points.correspondences[i - 1].index);
-    }
+    const std::size_t here = scene().points.correspondences[i].index;
+    EXPECT_LT(here, 500U);
+    if (i == 0) continue;
+    const std::size_t before = scene().points.correspondences[i - 1].index;
+    const auto place = [](std::size_t point) { return std::pair(scene().patches.patch_of[point], point); };
+    EXPECT_LT(place(before), place(here));
   }
+}
+
+TEST_F(Associate, PutsEveryPointUnderItsOwnRegion) {
+  // Homes that change from point to point, so that a patch has points of both.
+  RegionSet& regions = scene().regions;
+  regions[1] = regions[0];
+  regions[1].pose.translation.z() += 0.003;
+  for (std::size_t i = 0; i < scene().tables.size; ++i) scene().points.home[i] = i % 3 == 0 ? 1 : 0;
+  const std::size_t count = run(20 * kUnitsPerMillimetre);
+  const RegionPoses poses = fixed_poses(regions, scene().tables.centre);
+  std::array<std::size_t, 2> of{};
+  for (std::size_t k = 0; k < count; ++k) {
+    const Correspondence& c = scene().points.correspondences[k];
+    const std::size_t i = c.index, region = i % 3 == 0 ? 1 : 0;
+    ASSERT_EQ(static_cast<std::size_t>(c.region), region);
+    const ModelTables& t = scene().tables;
+    const IntPoint point = poses[region].point(t.x[i], t.y[i], t.z[i]);
+    ASSERT_EQ(c.point.x, point.x);
+    ASSERT_EQ(c.point.y, point.y);
+    ASSERT_EQ(c.point.z, point.z);
+    ++of[region];
+  }
+  EXPECT_GT(of[0], 100U);
+  EXPECT_GT(of[1], 100U);
 }
 
 TEST_F(Associate, TakesNothingBeyondTheGate) {
