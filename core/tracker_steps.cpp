@@ -119,9 +119,9 @@ void regain_base(TrackerState& s) noexcept {
 void label_points(TrackerState& s) noexcept {
   recall_strays(s.patches, s.warp, s.points);
   const Sighting sighting(s.tables, s.surface, s.projector, s.tolerance);
-  const PatchSet border = border_patches(s.patches, s.points.home);
-  settle_undecided(s.tables, s.patches, border, sighting, s.regions, s.points);
-  s.counts = label({s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance, border,
+  const RegionBorders borders = region_borders(s.patches, s.points.home);
+  settle_undecided(s.tables, s.patches, borders, sighting, s.regions, s.points);
+  s.counts = label({s.tables, s.patches, s.warp, s.surface, s.projector, s.tolerance, borders,
                     s.settings.steps.temporal_evidence},
                    s.regions, s.points);
 }

@@ -6,6 +6,7 @@
 
 #include "core/deform/radius_search.hpp"
 #include "core/fixed/integer_root.hpp"
+#include "core/track/placed_points.hpp"
 #include "core/track/sight.hpp"
 
 namespace pliant {
@@ -101,9 +102,9 @@ std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
 }
 
 /// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
-/// inlier limit, 3 σ or more, put it off its region, which has it at `rigid`.
+/// inlier limit, `limit`, 3 σ or more, put it off its region, which has it at `rigid`.
 Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sighting& sighting,
-                const IntPoint& rigid, std::int8_t region, const Sighting::Look& at_home,
+                const IntPoint& rigid, std::int32_t limit, std::int8_t region, const Sighting::Look& at_home,
                 std::size_t i) noexcept {
   Verdict verdict;
   verdict.look = at_home;
@@ -116,9 +117,9 @@ Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sight
   }
   verdict.warped = warped_point(context.model, context.patches, lanes, i);
   verdict.distance = distance_of(verdict.rigid, verdict.warped);
-  const bool apart = verdict.distance * 4 > 3 * context.tolerance.deformed(verdict.rigid.z);
+  const bool apart = verdict.distance * 4 > 3 * limit;
   if (at_home.sight == Sight::agrees && !apart) return verdict;
-  if (!apart && verdict.distance * 4 < context.tolerance.deformed(verdict.rigid.z)) {
+  if (!apart && verdict.distance * 4 < limit) {
     verdict.off = at_home.sight == Sight::in_front;
     return verdict;
   }
@@ -128,7 +129,7 @@ Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sight
   // Beside an outline most often: it is matched by the radius search of deformed points.
   if (apart && at_warp.sight == Sight::none && at_home.sight != Sight::agrees &&
       at_home.sight != Sight::behind)
-    (void)sighting.look_beside(kSearchLimits * context.tolerance.deformed(verdict.rigid.z), at_warp);
+    (void)sighting.look_beside(kSearchLimits * limit, at_warp);
   verdict.doubtful = at_home.sight == Sight::agrees;
   verdict.turned = at_home.sight == Sight::none && !apart && at_warp.sight == Sight::agrees;
   verdict.off = (at_warp.sight == Sight::agrees && !verdict.turned) || at_home.sight == Sight::in_front;
@@ -148,69 +149,126 @@ IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) no
   }
   // small differences are noise; a rigid point stays within the limit
   const std::int32_t whole = label >= 0 ? std::max(verdict.distance, limit) : limit;
-  const std::int32_t share = std::min(verdict.distance, limit);
-  return {r.x + (w.x - r.x) * share / whole, r.y + (w.y - r.y) * share / whole,
-          r.z + (w.z - r.z) * share / whole};
+  const std::int32_t share = (std::min(verdict.distance, limit) << 14) / whole;  // Q14
+  const auto part = [&](std::int32_t from, std::int32_t to) {
+    return from + static_cast<std::int32_t>((static_cast<std::int64_t>(to - from) * share + 8192) >> 14);
+  };
+  return {part(r.x, w.x), part(r.y, w.y), part(r.z, w.z)};
 }
+
+/// Labels points one by one, and counts how they were seen.
+class Labeller {
+ public:
+  Labeller(const LabelContext& context, const RegionSet& regions, PointState& points) noexcept
+      : context_(context),
+        regions_(regions),
+        points_(points),
+        poses_(fixed_poses(regions, context.model.centre)),
+        lanes_(lanes_of(context.patches, context.warp)),
+        sighting_(context.model, context.surface, context.projector, context.tolerance),
+        several_(count_alive(regions) > 1) {}
+
+  /// Every point; patch by patch, so that what stands together is placed together.
+  void label_all() noexcept {
+    const PatchPoints& by_patch = context_.model.by_patch;
+    PlacedPoints placed;
+    for (std::size_t p = 0; p < context_.patches.count; ++p) {
+      const std::int8_t home = context_.warp.home[p];
+      const bool border = several_ && context_.borders.has(p);
+      const std::size_t begin = by_patch.begin[p], end = begin + by_patch.count[p];
+      for (std::size_t first = begin; first < end; first += PlacedPoints::kMost) {
+        const std::size_t count = std::min(PlacedPoints::kMost, end - first);
+        placed.place({by_patch, first}, PatchPoints::filled_up(count),
+                     poses_[static_cast<std::size_t>(home)]);
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::size_t i = by_patch.index[first + k];
+          label_point(
+              i, border,
+              points_.home[i] == home ? sighting_.look(placed.point(k), placed.normal(k)) : at_home(i));
+        }
+      }
+    }
+  }
+  [[nodiscard]] const SightCounts& counts() const noexcept { return counts_; }
+
+ private:
+  [[nodiscard]] Sighting::Look at_home(std::size_t i) const noexcept {
+    return sighting_.look(i, poses_[static_cast<std::size_t>(points_.home[i])]);
+  }
+
+  /// `look`: at its home's place. `border`: in a patch beside another region.
+  void label_point(std::size_t i, bool border, Sighting::Look look) noexcept {
+    const ModelTables& model = context_.model;
+    const std::uint8_t enough_to_switch = context_.with_memory ? kSwitchAt : std::uint8_t{1};
+    if (border &&
+        consider_rivals(model, regions_, sighting_, poses_, context_.tolerance.deformed(look.point.z), look,
+                        enough_to_switch, points_, i))
+      look = at_home(i);
+    IntPoint rigid = look.point;
+    if (several_ && look.sight == Sight::none &&
+        carry_where_allowed(model, regions_, sighting_, poses_, points_, i))
+      rigid = poses_[static_cast<std::size_t>(points_.home[i])].point(model.x[i], model.y[i], model.z[i]);
+    const std::int32_t limit = context_.tolerance.deformed(rigid.z);
+    const Verdict verdict = examine(context_, lanes_, sighting_, rigid, limit, points_.home[i], look, i);
+    weigh(i, verdict);
+    decide(i, verdict, look.sight, limit);
+  }
+
+  /// What a frame adds to the evidence that a point is off its region, and to its misfit.
+  void weigh(std::size_t i, const Verdict& verdict) noexcept {
+    const Sight sight = verdict.look.sight;
+    if (verdict.off) {
+      raise(points_.evidence[i], verdict.doubtful ? 1 : 2, kEvidenceMax);
+    } else if (sight == Sight::agrees) {
+      raise(points_.evidence[i], -2, kEvidenceMax);
+      points_.misfit[i] += (verdict.look.residual * 16 - points_.misfit[i]) /
+                           (points_.frames <= kMisfitFirstFrames ? points_.frames : kMisfitFrames);
+    } else if (points_.evidence[i] < kEvidenceDeformed) {
+      raise(points_.evidence[i], -1, kEvidenceMax);
+    }
+    if (!context_.with_memory) points_.evidence[i] = verdict.off ? kEvidenceMax : std::uint8_t{0};
+  }
+
+  void decide(std::size_t i, const Verdict& verdict, Sight at_home, std::int32_t limit) noexcept {
+    const Sight sight = verdict.look.sight;
+    counts_.facing += verdict.look.facing ? 1 : 0;
+    counts_.in_front += sight == Sight::in_front ? 1 : 0;
+    counts_.behind += sight == Sight::behind ? 1 : 0;
+    const bool off = points_.evidence[i] >= kEvidenceDeformed;
+    std::int8_t label = kNotObserved;
+    if (off && (sight == Sight::agrees || sight == Sight::in_front))
+      label = kDeformed;
+    else if (!off && sight == Sight::agrees && (at_home == Sight::agrees || verdict.turned))
+      label = points_.home[i];
+    else if (sight == Sight::agrees)
+      label = kDeformed;  // seen, but not where its region puts it
+    counts_.deformed += label == kDeformed && sight == Sight::agrees ? 1 : 0;
+    points_.label[i] = label;
+    points_.sight[i] = sight;
+    points_.residual[i] = label == kDeformed ? 0 : verdict.look.residual;
+    points_.match[i] = sight == Sight::agrees ? verdict.look.match : -1;
+    points_.position[i] = place(verdict, label, limit);
+    const IntPoint &r = verdict.rigid, &at = points_.position[i];
+    points_.offset[i] = {at.x - r.x, at.y - r.y, at.z - r.z};
+  }
+
+  const LabelContext& context_;
+  const RegionSet& regions_;
+  PointState& points_;
+  RegionPoses poses_;
+  WarpLanes lanes_;
+  Sighting sighting_;
+  bool several_;
+  SightCounts counts_;
+};
 
 }  // namespace
 
 SightCounts label(const LabelContext& context, const RegionSet& regions, PointState& points) noexcept {
-  const ModelTables& model = context.model;
-  const RegionPoses poses = fixed_poses(regions, model.centre);
-  const int alive = count_alive(regions);
-  const WarpLanes lanes = lanes_of(context.patches, context.warp);
-  const Sighting sighting(model, context.surface, context.projector, context.tolerance);
-  const std::uint8_t enough_to_switch = context.with_memory ? kSwitchAt : std::uint8_t{1};
-  SightCounts counts;
   points.frames = std::min(points.frames + 1, kMisfitFirstFrames + 1);
-  for (std::size_t i = 0; i < model.size; ++i) {
-    Sighting::Look look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
-    const std::int32_t limit = context.tolerance.deformed(look.point.z);
-    if (alive > 1 && context.border.has(context.patches.patch_of[i]) &&
-        consider_rivals(model, regions, sighting, poses, limit, look, enough_to_switch, points, i))
-      look = sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
-    IntPoint rigid = look.point;
-    if (alive > 1 && look.sight == Sight::none &&
-        carry_where_allowed(model, regions, sighting, poses, points, i))
-      rigid = poses[static_cast<std::size_t>(points.home[i])].point(model.x[i], model.y[i], model.z[i]);
-    const Verdict verdict = examine(context, lanes, sighting, rigid, points.home[i], look, i);
-    const Sight sight = verdict.look.sight;
-    counts.facing += verdict.look.facing ? 1 : 0;
-    counts.in_front += sight == Sight::in_front ? 1 : 0;
-    counts.behind += sight == Sight::behind ? 1 : 0;
-
-    if (verdict.off) {
-      raise(points.evidence[i], verdict.doubtful ? 1 : 2, kEvidenceMax);
-    } else if (sight == Sight::agrees) {
-      raise(points.evidence[i], -2, kEvidenceMax);
-      points.misfit[i] += (verdict.look.residual * 16 - points.misfit[i]) /
-                          (points.frames <= kMisfitFirstFrames ? points.frames : kMisfitFrames);
-    } else if (points.evidence[i] < kEvidenceDeformed) {
-      raise(points.evidence[i], -1, kEvidenceMax);
-    }
-    if (!context.with_memory) points.evidence[i] = verdict.off ? kEvidenceMax : std::uint8_t{0};
-    const bool off = points.evidence[i] >= kEvidenceDeformed;
-    if (off && (sight == Sight::agrees || sight == Sight::in_front)) {
-      points.label[i] = kDeformed;
-      counts.deformed += sight == Sight::agrees ? 1 : 0;
-    } else if (!off && sight == Sight::agrees && (look.sight == Sight::agrees || verdict.turned)) {
-      points.label[i] = points.home[i];
-    } else if (sight == Sight::agrees) {
-      points.label[i] = kDeformed;  // seen, but not where its region puts it
-      ++counts.deformed;
-    } else {
-      points.label[i] = kNotObserved;
-    }
-    points.sight[i] = sight;
-    points.residual[i] = points.label[i] == kDeformed ? 0 : verdict.look.residual;
-    points.match[i] = sight == Sight::agrees ? verdict.look.match : -1;
-    points.position[i] = place(verdict, points.label[i], limit);
-    const IntPoint& r = verdict.rigid;
-    const IntPoint& at = points.position[i];
-    points.offset[i] = {at.x - r.x, at.y - r.y, at.z - r.z};
-  }
-  return counts;
+  Labeller labeller(context, regions, points);
+  labeller.label_all();
+  return labeller.counts();
 }
 
 void carry_homes_to_unseen(const ModelTables& model, PointState& points) noexcept {

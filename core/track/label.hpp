@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/deform/patch_warp.hpp"
+#include "core/track/borders.hpp"
 #include "core/track/track_state.hpp"
 
 namespace pliant {
@@ -22,7 +23,7 @@ struct LabelContext {
   const Surface& surface;
   const Projector& projector;
   const Tolerance& tolerance;
-  PatchSet border;          ///< patches where regions meet
+  const RegionBorders& borders;
   bool with_memory = true;  ///< evidence gathers over frames; else one frame decides
 };
 

@@ -89,8 +89,8 @@ class TrackScene {
   }
   /// With the surface where the warp has it.
   SightCounts look_now(bool with_memory = true) {
-    const PatchSet border = border_patches(patches, points.home);
-    return label({tables, patches, *warp, surface, projector, tolerance, border, with_memory}, regions,
+    const RegionBorders borders = region_borders(patches, points.home);
+    return label({tables, patches, *warp, surface, projector, tolerance, borders, with_memory}, regions,
                  points);
   }
   [[nodiscard]] Vector3 rest(std::size_t i) const {

@@ -34,7 +34,7 @@ class Undecided : public ::testing::Test {
   }
   void settle() {
     const Sighting sighting(scene_.tables, scene_.surface, scene_.projector, scene_.tolerance);
-    settle_undecided(scene_.tables, scene_.patches, border_patches(scene_.patches, scene_.points.home),
+    settle_undecided(scene_.tables, scene_.patches, region_borders(scene_.patches, scene_.points.home),
                      sighting, scene_.regions, scene_.points);
   }
   std::size_t wrong(double from, double to) const {
