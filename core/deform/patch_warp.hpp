@@ -27,14 +27,16 @@ struct PatchWarp {
   std::array<RigidTransform, kMaxPatches> pose;  ///< camera <- model, of each patch
   std::array<std::int8_t, kMaxPatches> home{};   ///< region of most of its points
   std::array<double, kMaxPatches> seen{};        ///< weighted readings of this frame
+  std::array<bool, kMaxPatches> fits{};          ///< its readings fit as well where its region is
   std::array<bool, kMaxPatches> held{};          ///< is in this frame where its region puts it
   std::array<bool, kMaxPatches> rigid{};  ///< it and its neighbours are exactly where one region puts them
 
   std::array<StepMemory, kMaxPatches> steps;  ///< of each patch
 
   // scratch
-  PatchMoments moments;       ///< of the readings, where the warp has the patches
-  PatchMoments home_moments;  ///< where their regions put them
+  PatchMoments moments;                    ///< of the readings, where the warp has the patches
+  PatchMoments home_moments;               ///< where their regions put them
+  std::array<Vector6, kMaxPatches> since;  ///< how patches moved since, about their centres
   std::array<FixedPose, kMaxPatches> fixed;
   std::array<IntPoint, kMaxPatches> centre;
   ElasticSystem system;
