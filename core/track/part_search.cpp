@@ -25,6 +25,11 @@ bool counts(const PatchWarp& warp, std::size_t p, std::int8_t k) noexcept {
   return warp.home[p] == k && patch_counts(warp, p);
 }
 
+/// What fits as well where its region is shows no motion of its own: springs drag it along with what moves.
+bool shows(const PatchWarp& warp, std::size_t p, std::int8_t k) noexcept {
+  return counts(warp, p, k) && !warp.fits[p];
+}
+
 struct Attempt {
   PatchSet set;
   RigidTransform pose;
@@ -47,7 +52,7 @@ void measure(const PatchTables& patches, const PatchWarp& warp, std::int8_t k, c
              Attempt& attempt) noexcept {
   attempt.points = attempt.own = attempt.region = 0;
   attempt.set.for_each([&](std::size_t p) {
-    if (!counts(warp, p, k)) return;
+    if (!shows(warp, p, k)) return;
     attempt.points += warp.seen[p];
     attempt.own += warp.seen[p] * patch_deviation(patches, warp, p, attempt.pose);
     attempt.region += warp.seen[p] * patch_deviation(patches, warp, p, region);
@@ -60,7 +65,7 @@ std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::i
   std::size_t count = 0;
   std::array<double, kSeeds> worth{};
   for (std::size_t p = 0; p < patches.count; ++p) {
-    if (!counts(warp, p, k)) continue;
+    if (!shows(warp, p, k)) continue;
     const double deviation = patch_deviation(patches, warp, p, region);
     if (deviation < moved * moved) continue;
     std::size_t place = count;

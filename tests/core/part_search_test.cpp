@@ -34,11 +34,14 @@ void tell_everything(const TrackScene& scene, PatchWarp& warp) {
 class PartSearch : public synthetic::SharedScene<synthetic::two_part_bar> {
  protected:
   /// Where the bar is at x: the middle line bends by `curvature(x)` radians a metre.
+  /// Its readings fit the region, too, from x = `fits_from` on.
   template <typename Curvature>
-  bool find(const Curvature& curvature) {
+  bool find(const Curvature& curvature, double fits_from = 1) {
     PatchWarp& warp = *scene().warp;
     warp.reset(usual_pose());
     warp.home.fill(0);
+    for (std::size_t p = 0; p < scene().patches.count; ++p)
+      warp.fits[p] = scene().patches.centres[p].x() > fits_from;
     for (std::size_t p = 0; p < scene().patches.count; ++p) {
       const double end = scene().patches.centres[p].x();
       Vector3 line = Vector3::Zero();
@@ -63,6 +66,20 @@ class PartSearch : public synthetic::SharedScene<synthetic::two_part_bar> {
 
   RigidPart part_;
 };
+
+TEST_F(PartSearch, TakesNoMotionFromWhatItsRegionExplains) {
+  const auto joint = [](double x) { return x > 0.05 && x < 0.07 ? 15.0 : 0.0; };
+  EXPECT_FALSE(find(joint, 0.04));
+  // What shows its motion takes along what does not.
+  ASSERT_TRUE(find(joint, 0.12));
+  bool any = false;
+  for (std::size_t p = 0; p < scene().patches.count; ++p) {
+    if (scene().patches.centres[p].x() < 0.12) continue;
+    any = true;
+    EXPECT_TRUE(part_.patches.has(p));
+  }
+  EXPECT_TRUE(any);
+}
 
 TEST_F(PartSearch, FindsWhatTurnsAtAJoint) {
   // 0.3 radians within 2 cm
