@@ -83,9 +83,12 @@ struct Gathered {
   rows.flush();
 }
 
-/// Does the sum of squares fall by more than `much` when the patch follows its readings, a · x = b, as far as
-/// a held one may?
-bool pulls(const PatchTables& patches, Symmetric6 a, const Vector6& b, std::size_t p, double much) noexcept {
+/// Does the sum of squares fall by more than `much` when the patch follows its readings as far as a held one
+/// may?
+bool pulls(const PatchTables& patches, const PlaneMoments& moments, std::size_t p, double much) noexcept {
+  Symmetric6 a;
+  Vector6 b = Vector6::Zero();
+  add_readings(moments, a, b);
   const double hold = kHoldShare * patches.sizes[p], turn = hold * 0.5 * patches.radius * patches.radius;
   // Readings resist, too: it falls by no more than without them.
   if (b.tail<3>().squaredNorm() / hold + b.head<3>().squaredNorm() / turn <= much) return false;
@@ -93,13 +96,6 @@ bool pulls(const PatchTables& patches, Symmetric6 a, const Vector6& b, std::size
   a.add_turn_spring(turn);
   Factor6 factor;
   return factor.factorise(a) && b.dot(factor.solve(b)) > much;
-}
-
-/// Metres squared.
-double mean_square(const PlaneMoments& m) noexcept {
-  return m.weight > 0 ? static_cast<double>(m.square) / static_cast<double>(m.weight) * kResidualMetres *
-                            kResidualMetres
-                      : 0;
 }
 
 PlaneMoments sum_of(PlaneMoments a, const PlaneMoments& b) noexcept {
@@ -138,7 +134,6 @@ void gather_readings(const PatchLook& look, const PointState& points, const Chos
   for (std::size_t p = 0; p < look.patches.count; ++p) {
     if (!chosen[p]) continue;
     warp.moments[p] = PlaneMoments();
-    warp.since[p] = Vector6::Zero();
     gather(look, points, p, warp, {warp.moments[p], warp.moments[p]});
   }
 }
@@ -152,24 +147,11 @@ void measure_fits(const PatchLook& look, const PointState& points, const ChosenP
     PlaneMoments aside, near;
     gather(look, points, p, warp, {moments[p], aside, &near});
     const PlaneMoments m = sum_of(moments[p], near);
-    Symmetric6 a;
-    Vector6 b = Vector6::Zero();
-    add_readings(m, a, b);
-    fits[p] = {static_cast<double>(m.weight) / 256, mean_square(m), pulls(look.patches, a, b, p, much),
-               near.rows == 0 && aside.rows == 0};
+    const auto weight = static_cast<double>(m.weight);
+    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0,
+               pulls(look.patches, m, p, much)};
     if (aside.rows > 0) moments[p] = sum_of(moments[p], aside);
   }
-}
-
-PatchFit moved_fit(const PatchTables& patches, const PlaneMoments& moments, const PatchFit& fit,
-                   std::size_t p, const Vector6& motion, double much) noexcept {
-  Symmetric6 a;
-  Vector6 b = Vector6::Zero();
-  add_readings(moments, a, b);
-  const Vector6 answer = a * motion;
-  const double change = motion.dot(answer) - 2 * motion.dot(b);
-  return {fit.weight, fit.weight > 0 ? std::max(fit.square + change / fit.weight, 0.0) : 0,
-          pulls(patches, a, b - answer, p, much), fit.plain};
 }
 
 }  // namespace pliant

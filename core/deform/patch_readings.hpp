@@ -39,7 +39,6 @@ struct PatchFit {
   double weight = 0;    ///< of readings
   double square = 0;    ///< mean residual squared, metres squared
   bool pulled = false;  ///< its own motion would lower the sum of squares by much
-  bool plain = false;   ///< nothing aside of it had a part in that
 };
 
 /// Of all readings that a patch could have, the share that its region's pull is worth for a patch that its
@@ -56,11 +55,6 @@ void gather_readings(const PatchLook& look, const PointState& points, const Chos
 /// than `much`?
 void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen, double much,
                   PatchWarp& warp, PatchMoments& moments, std::array<PatchFit, kMaxPatches>& fits) noexcept;
-
-/// How well a patch would fit, were it moved by a small `motion`, with the same readings: its `moments` and
-/// its `fit`, which is plain.
-[[nodiscard]] PatchFit moved_fit(const PatchTables& patches, const PlaneMoments& moments, const PatchFit& fit,
-                                 std::size_t p, const Vector6& motion, double much) noexcept;
 
 /// Adds a patch's readings to its normal equations: radians and metres about its centre.
 void add_readings(const PlaneMoments& m, Symmetric6& a, Vector6& b) noexcept;

@@ -106,9 +106,6 @@ constexpr double kByChance = 1.4;
 
 /// Nearer than this share of that, a patch is where its region is.
 constexpr double kAtHome = 0.25;
-/// Nearer than so many σ, a patch meets the same readings: how they fit it elsewhere follows.
-constexpr double kClose = 1;
-
 /// By chance, the six freedoms of a patch lower the sum of its squared residuals by six times σ² where edges,
 /// which are not smoothed, hold it; smoothing makes neighbouring readings share their noise, so that a
 /// patch's few are worth a fourth: hence four times. What they lower by more pulls a patch away.
@@ -124,38 +121,32 @@ ChosenPatches return_home(const PatchLook& look, const RegionSet& regions, const
                much = kByChanceFreely * noise * noise;
   const std::size_t count = look.patches.count;
   std::array<PatchFit, kMaxPatches> here, home;
-  ChosenPatches all, astray{}, far{};
+  ChosenPatches all, astray{};
   all.fill(true);
   measure_fits(look, points, all, much, warp, warp.moments, here);
   home = here;
   const std::array<RigidTransform, kMaxPatches> own = warp.pose;
   for (std::size_t p = 0; p < count; ++p) {
     const RigidTransform& region = regions[static_cast<std::size_t>(warp.home[p])].pose;
-    const double deviation = patch_deviation(look.patches, warp, p, region);
-    astray[p] = deviation > near * near;
-    far[p] = astray[p] && (deviation > kClose * kClose * noise * noise || !here[p].plain);
-    warp.since[p] = motion_between(region, own[p], own[p] * look.patches.centres[p]);
-    if (astray[p] && !far[p])
-      home[p] = moved_fit(look.patches, warp.moments[p], here[p], p, warp.since[p], much);
+    astray[p] = patch_deviation(look.patches, warp, p, region) > near * near;
     warp.pose[p] = region;
   }
-  measure_fits(look, points, far, much, warp, warp.home_moments, home);
-  std::array<bool, kMaxPatches> fits{};
+  measure_fits(look, points, astray, much, warp, warp.home_moments, home);
   for (std::size_t p = 0; p < count; ++p) {
     const bool as_many = home[p].weight > 0 && home[p].weight >= 0.9 * here[p].weight;
     const bool as_near = home[p].square <= std::max(kByChance * here[p].square, smoothed * smoothed);
-    fits[p] = as_many && as_near;
-    warp.fits[p] = fits[p];
+    warp.fits[p] = as_many && as_near;
     warp.seen[p] = here[p].weight;
   }
   for (std::size_t p = 0; p < count; ++p) {
-    warp.held[p] = fits[p];
+    warp.held[p] = warp.fits[p];
     look.patches.neighbours[p].for_each([&](std::size_t q) {
-      if (warp.held[p] && warp.home[q] == warp.home[p] && here[q].weight > 0) warp.held[p] = fits[q];
+      if (warp.held[p] && warp.home[q] == warp.home[p] && here[q].weight > 0) warp.held[p] = warp.fits[q];
     });
-    if (warp.held[p] && far[p]) warp.moments[p] = warp.home_moments[p];
-    if (!warp.held[p]) warp.pose[p] = own[p];
-    if (!warp.held[p] || far[p]) warp.since[p] = Vector6::Zero();
+    if (!warp.held[p])
+      warp.pose[p] = own[p];
+    else if (astray[p])
+      warp.moments[p] = warp.home_moments[p];
     const PatchFit& now = warp.held[p] ? home[p] : here[p];
     astray[p] = (astray[p] && !warp.held[p]) || now.pulled;
   }
@@ -210,9 +201,7 @@ bool balance(const PatchLook& look, const RegionSet& regions, ChosenPatches& mov
       continue;
     }
     ++moving_count;
-    Symmetric6& own = warp.system.own(p);
-    add_readings(warp.moments[p], own, warp.system.force(p));
-    warp.system.force(p) -= own * warp.since[p];
+    add_readings(warp.moments[p], warp.system.own(p), warp.system.force(p));
     warp.seen[p] = static_cast<double>(warp.moments[p].weight) / 256;
     add_anchor(look.patches, regions[static_cast<std::size_t>(warp.home[p])].pose, limit, p, warp);
   }

@@ -34,9 +34,8 @@ struct PatchWarp {
   std::array<StepMemory, kMaxPatches> steps;  ///< of each patch
 
   // scratch
-  PatchMoments moments;                    ///< of the readings, where the warp has the patches
-  PatchMoments home_moments;               ///< where their regions put them
-  std::array<Vector6, kMaxPatches> since;  ///< how patches moved since, about their centres
+  PatchMoments moments;       ///< of the readings, where the warp has the patches
+  PatchMoments home_moments;  ///< where their regions put them
   std::array<FixedPose, kMaxPatches> fixed;
   std::array<IntPoint, kMaxPatches> centre;
   ElasticSystem system;
