@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 SHARED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../shared")
 sys.path.insert(0, os.path.join(SHARED, "evaluate"))
 from evaluate import read_ply, rigid_fit, xyz  # noqa: E402
+from meshes import write_ply  # noqa: E402
 
 SEQUENCES = {"seq_wolf_lbs": 0.4, "seq_cheburashka_lbs": 0.35, "seq_human_samba": 0.6, "seq_cat_poses": 0.4}
 SAMPLES, NOISE, RIGHT = 9000, 0.0005, 0.03  # points, metres, of the object's size
@@ -33,15 +34,6 @@ def read_mesh(path):
             corners = [int(word.split("/")[0]) - 1 for word in words[1:]]
             triangles += [[corners[0], corners[k], corners[k + 1]] for k in range(1, len(corners) - 1)]
     return np.array(vertices), np.array(triangles)
-
-
-def write_ply(path, vertices, triangles=()):
-    with open(path, "w", encoding="ascii") as out:
-        out.write(f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n")
-        out.write("".join(f"property float {axis}\n" for axis in "xyz"))
-        out.write(f"element face {len(triangles)}\nproperty list uchar int vertex_indices\nend_header\n")
-        out.writelines("%.7g %.7g %.7g\n" % tuple(vertex) for vertex in vertices)
-        out.writelines("3 %d %d %d\n" % tuple(triangle) for triangle in triangles)
 
 
 def random_rotation(rng):

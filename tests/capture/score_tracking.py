@@ -15,8 +15,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(HERE, "../../../shared/evaluate"))
+sys.path[:0] = [os.path.join(HERE, "../accuracy"), os.path.join(HERE, "../../../shared/evaluate")]
 import evaluate
+from meshes import subdivided, write_ply
 
 FRAMES = "200"
 CAPTURE = "?motion=circled&frames=300"
@@ -28,27 +29,6 @@ NEAR = 0.003     # metres
 
 def run(*words):
     subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-
-
-def write_ply(path, points, triangles):
-    with open(path, "wb") as f:
-        f.write(("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\n"
-                 "property float z\nelement face %d\nproperty list uchar int vertex_indices\nend_header\n"
-                 % (len(points), len(triangles))).encode())
-        f.write(points.astype("<f4").tobytes())
-        faces = np.empty(len(triangles), np.dtype([("n", "u1"), ("i", "<i4", 3)]))
-        faces["n"], faces["i"] = 3, triangles
-        f.write(faces.tobytes())
-
-
-def subdivided(points, triangles):
-    """Every triangle in four: other vertices to choose from, the same surface."""
-    sides = np.sort(np.vstack([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
-    edges, at = np.unique(sides, axis=0, return_inverse=True)
-    a, b, c = len(points) + at.reshape(3, -1)
-    middles = (points[edges[:, 0]] + points[edges[:, 1]]) / 2
-    return np.vstack([points, middles]), np.vstack([
-        np.stack(t, 1) for t in ((triangles[:, 0], a, c), (triangles[:, 1], b, a), (triangles[:, 2], c, b), (a, b, c))])
 
 
 def sequence_of(pliant, thing, folder):
