@@ -235,13 +235,11 @@ class Labeller {
     counts_.in_front += sight == Sight::in_front ? 1 : 0;
     counts_.behind += sight == Sight::behind ? 1 : 0;
     const bool off = points_.evidence[i] >= kEvidenceDeformed;
-    std::int8_t label = kNotObserved;
-    if (off && (sight == Sight::agrees || sight == Sight::in_front))
-      label = kDeformed;
-    else if (!off && sight == Sight::agrees && (at_home == Sight::agrees || verdict.turned))
-      label = points_.home[i];
-    else if (sight == Sight::agrees)
-      label = kDeformed;  // seen, but not where its region puts it
+    const bool rigid = !off && sight == Sight::agrees && (at_home == Sight::agrees || verdict.turned);
+    // Seen, but not where its region puts it, or known to be off it and the camera sees through its place
+    // there.
+    const bool deformed = !rigid && (sight == Sight::agrees || (off && sight == Sight::in_front));
+    const std::int8_t label = rigid ? points_.home[i] : deformed ? kDeformed : kNotObserved;
     counts_.deformed += label == kDeformed && sight == Sight::agrees ? 1 : 0;
     points_.label[i] = label;
     points_.sight[i] = sight;
