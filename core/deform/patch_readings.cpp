@@ -98,15 +98,6 @@ bool pulls(const PatchTables& patches, const PlaneMoments& moments, std::size_t 
   return factor.factorise(a) && b.dot(factor.solve(b)) > much;
 }
 
-PlaneMoments sum_of(PlaneMoments a, const PlaneMoments& b) noexcept {
-  for (std::size_t k = 0; k < a.a.size(); ++k) a.a[k] += b.a[k];
-  for (std::size_t k = 0; k < a.b.size(); ++k) a.b[k] += b.b[k];
-  a.weight += b.weight;
-  a.square += b.square;
-  a.rows += b.rows;
-  return a;
-}
-
 }  // namespace
 
 void place_patches(const ModelTables& model, const PatchTables& patches, const ChosenPatches& chosen,
@@ -146,11 +137,12 @@ void measure_fits(const PatchLook& look, const PointState& points, const ChosenP
     moments[p] = PlaneMoments();
     PlaneMoments aside, near;
     gather(look, points, p, warp, {moments[p], aside, &near});
-    const PlaneMoments m = sum_of(moments[p], near);
-    const auto weight = static_cast<double>(m.weight);
-    fits[p] = {weight / 256, weight > 0 ? static_cast<double>(m.square) / weight / (256000.0 * 256000.0) : 0,
-               pulls(look.patches, m, p, much)};
-    if (aside.rows > 0) moments[p] = sum_of(moments[p], aside);
+    near.add(moments[p]);
+    const auto weight = static_cast<double>(near.weight);
+    fits[p] = {weight / 256,
+               weight > 0 ? static_cast<double>(near.square) / weight * kResidualMetres * kResidualMetres : 0,
+               pulls(look.patches, near, p, much)};
+    moments[p].add(aside);
   }
 }
 

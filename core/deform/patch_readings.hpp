@@ -52,7 +52,8 @@ void gather_readings(const PatchLook& look, const PointState& points, const Chos
                      PatchWarp& warp) noexcept;
 
 /// The same into `moments`, and how well they fit: does a patch's own motion lower the sum of squares by more
-/// than `much`?
+/// than `much`, in weighted readings times metres squared? What lies aside of a point counts as far as the
+/// next few pixels for the fit, and as far as the gates reach for the moments.
 void measure_fits(const PatchLook& look, const PointState& points, const ChosenPatches& chosen, double much,
                   PatchWarp& warp, PatchMoments& moments, std::array<PatchFit, kMaxPatches>& fits) noexcept;
 

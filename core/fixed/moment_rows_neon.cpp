@@ -45,7 +45,7 @@ void add_moment_rows_neon(const MomentRow* rows, std::size_t count, PlaneMoments
     weight += row.weight;
     square += static_cast<std::int64_t>(row.weight * row.residual) * row.residual;
   }
-  std::int64_t below = 0;  // the diagonal: not kept
+  std::int64_t below = 0;  // what lies below the diagonal is not kept
   auto& m = moments.a;
   add_pair(m[0], below, a0);
   add_pair(m[1], m[6], a1);

@@ -30,6 +30,14 @@ struct PlaneMoments {
     square += static_cast<std::int64_t>(w) * residual * residual;
     ++rows;
   }
+  /// The rows of `other`, too.
+  void add(const PlaneMoments& other) noexcept {
+    for (std::size_t k = 0; k < a.size(); ++k) a[k] += other.a[k];
+    for (std::size_t k = 0; k < b.size(); ++k) b[k] += other.b[k];
+    weight += other.weight;
+    square += other.square;
+    rows += other.rows;
+  }
 };
 
 /// Tukey's weight (1 − (r/c)²)² in Q8; both in the same unit, |r| < 2^22, 0 < c < 2^22.

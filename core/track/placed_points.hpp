@@ -17,6 +17,7 @@ enum class Side : std::int32_t {
   facing  ///< faces_camera() within 75°
 };
 
+/// The point in the camera frame, 1/16 mm, its normal in Q14.
 [[nodiscard]] inline Side side_of(const IntPoint& point, const IntPoint& normal) noexcept {
   return faces_camera(point, normal, kCos75) ? Side::facing : on_rim(point, normal) ? Side::rim : Side::away;
 }
@@ -43,7 +44,8 @@ struct PlacedPoints {
   std::array<std::int32_t, kMost> x, y, z, nx, ny, nz;
   std::array<Side, kMost> side;
 
-  /// The first `count` of the columns, at most kMost; whole blocks (PatchPoints) are the quickest.
+  /// The first `count` of the columns, at most kMost; whole blocks (PatchPoints) are the quickest. Sides hold
+  /// up to 32 m from the camera along each axis; nothing beyond 8 m of depth is looked at.
   void place(const PointColumns& from, std::size_t count, const FixedPose& pose) noexcept;
   /// Point k as another pose has it.
   void put(std::size_t k, const IntPoint& point, const IntPoint& normal) noexcept {

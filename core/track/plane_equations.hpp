@@ -16,6 +16,7 @@ namespace pliant {
           weight};
 }
 
+/// Adds it to moments about `centre`.
 inline void add_plane_row(PlaneMoments& moments, const IntPoint& point, const IntPoint& n,
                           std::int32_t residual, std::int32_t weight, const IntPoint& centre) noexcept {
   const MomentRow row = moment_row(point, n, residual, weight, centre);

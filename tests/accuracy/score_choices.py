@@ -43,6 +43,7 @@ def follow(job):
     pliant, sequence, model = job
     with tempfile.TemporaryDirectory() as scratch:
         points = os.path.join(scratch, "points")
+        os.mkdir(points)  # stays empty where nothing is tracked
         subprocess.run([pliant, "run", "--model", model, "--source", "recording:" + sequence, "--pace", "fast", "--lcm-url",
                         "none", "--points", points], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
         for file in sorted(os.listdir(points))[1::2]:
@@ -56,15 +57,18 @@ def row(scores):
         values = [v for v in values if v is not None]
         return np.mean(values) if values else None
 
+    def text(form, *values):
+        return "–" if None in values else form % values
+
     def pair(name):
-        return "%.2f / %.1f" % (mean("position_" + name, "median_mm"), mean("position_" + name, "p95_mm"))
+        return text("%.2f / %.1f", mean("position_" + name, "median_mm"), mean("position_" + name, "p95_mm"))
 
     def share(key):
-        return "–" if mean(key) is None else "%.3f" % mean(key)
+        return text("%.3f", mean(key))
 
     for s in scores:
         s.setdefault("parts_whole_share")
-    return ["%.2f° %.2f mm" % (mean("rotation_deg_median"), mean("translation_mm_median")), pair("rigid"), pair("deformed"),
+    return [text("%.2f° %.2f mm", mean("rotation_deg_median"), mean("translation_mm_median")), pair("rigid"), pair("deformed"),
             pair("hidden"), share("wrong_rigid_share"), share("false_deformed_share"), share("deformed_f1"),
             share("parts_whole_share"), "%.1f" % mean("false_poses")]
 

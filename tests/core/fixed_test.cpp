@@ -58,6 +58,13 @@ TEST(PlaneMoments, AreExactInAnyOrder) {
   EXPECT_EQ(one.square, other.square);
   EXPECT_EQ(one.weight, other.weight);
   EXPECT_EQ(one.rows, 2000U);
+  PlaneMoments both = sum({rows.begin(), rows.begin() + 700});
+  both.add(sum({rows.begin() + 700, rows.end()}));
+  EXPECT_EQ(both.a, one.a);
+  EXPECT_EQ(both.b, one.b);
+  EXPECT_EQ(both.square, one.square);
+  EXPECT_EQ(both.weight, one.weight);
+  EXPECT_EQ(both.rows, one.rows);
   // against wide arithmetic, where the compiler has it
 #ifdef __SIZEOF_INT128__
   __extension__ using Wide = __int128;

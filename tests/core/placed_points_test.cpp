@@ -47,7 +47,9 @@ TEST(PlacedPoints, AreWhatThePoseSaysOfEachPoint) {
     const Vector3 axis = turn % 3 == 0   ? Vector3(1, 0, 0)
                          : turn % 3 == 1 ? Vector3(0, 1, 0)
                                          : Vector3(1, 2, -1);
-    const FixedPose pose(synthetic::pose_at({0.1, -0.05, 0.6 + 0.2 * turn}, axis, turn * 0.5235987755982988),
+    // from near to beyond what is looked at, and as far aside
+    const double away = turn < 9 ? 0.6 + 0.2 * turn : 9.5 * (turn - 8);
+    const FixedPose pose(synthetic::pose_at({0.3 * away, -0.1 * away, away}, axis, turn * 0.5235987755982988),
                          scene.tables.centre);
     for (std::size_t p = 0; p < scene.patches.count; ++p) {
       const std::size_t count = std::min<std::size_t>(points.count[p], PlacedPoints::kMost);
