@@ -85,9 +85,9 @@ std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::i
 /// A part moved by more than this share of the inlier limit, in the mean square.
 constexpr double kMoved = 0.6;
 
-/// A part explains more than half of what moved about it: around a joint that is all but the skin there. Of
-/// what bends, one motion explains a piece.
-constexpr double kMostOfWhatMoved = 0.5;
+/// A part explains this much of what moved about it: around a joint that is all but the skin there. Of what
+/// bends, one motion explains a piece, of an ear that is pressed up to two thirds.
+constexpr double kMostOfWhatMoved = 0.7;
 
 /// Share of what moved by `least` or more, connected with the part, that is of the part.
 double explained_share(const PatchTables& patches, const PatchWarp& warp, std::int8_t k,

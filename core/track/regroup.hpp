@@ -13,7 +13,7 @@ struct RegroupSettings {
   int max_regions = limits::kMaxRegions;
   std::uint32_t fewest_points = 40;  ///< of a region; derived from the model's size
   int merge_after = 4;               ///< frames in which two regions must move alike
-  int split_after = 3;               ///< frames in which a part must move in its own way
+  int split_after = 2;               ///< frames in which a part must move in its own way: one may be noise
 };
 
 /// Memory of the regrouping between frames.
