@@ -11,6 +11,9 @@ namespace {
 /// twentieth of a reading's noise.
 constexpr std::int64_t kEnough = 400;
 
+/// So many tell it to a tenth: what they tell of a clear case is enough.
+constexpr std::int64_t kFew = 64;
+
 /// An outline of fewer points says nothing: a motion with six freedoms that was fitted to so few fits better
 /// by chance.
 constexpr std::int64_t kFewestOnRim = 16;
@@ -60,6 +63,7 @@ double worse_by(const ModelTables& model, const PatchTables& patches, const Sigh
     if (a.sight != Sight::agrees && b.sight != Sight::agrees) continue;
     surface.add(a.sight == Sight::agrees ? std::min(std::abs(a.residual), limit) : limit,
                 b.sight == Sight::agrees ? std::min(std::abs(b.residual), limit) : limit);
+    if (surface.count == kFew && surface.gap(limit) > asked.clear) return surface.gap(limit);
   }
   const double on_surface = surface.gap(limit);
   const bool outlined = rim.count >= kFewestOnRim && rim.own * kWellOutlined <= rim.count * limit;

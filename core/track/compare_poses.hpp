@@ -17,6 +17,7 @@ struct AskedPoints {
   std::int8_t region = 0;
   const PatchSet* patches = nullptr;
   bool outline = true;  ///< their outline counts, too
+  double clear = 1;     ///< what is worse by more than this share of the limit is not asked any further
 };
 
 /// By how much pose `other` explains worse than `own` what is seen of the points: the mean distance from the

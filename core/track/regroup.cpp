@@ -115,9 +115,9 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
         alike = 0;
         continue;
       }
-      const bool fits =
-          worse_by(context.model, context.patches, context.sighting, points, {a_larger ? ib : ia, nullptr},
-                   regions[a_larger ? b : a].pose, regions[a_larger ? a : b].pose) <= kAsOne;
+      const bool fits = worse_by(context.model, context.patches, context.sighting, points,
+                                 {a_larger ? ib : ia, nullptr, true, 2 * kAsOne},
+                                 regions[a_larger ? b : a].pose, regions[a_larger ? a : b].pose) <= kAsOne;
       alike = fits ? static_cast<std::uint8_t>(alike + 1) : std::uint8_t{0};
       if (alike < settings.merge_after) continue;
       alike = 0;
