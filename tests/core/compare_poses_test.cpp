@@ -40,6 +40,20 @@ TEST_F(ComparePoses, APoseOffTheSurfaceIsWorseTheFartherItIs) {
   EXPECT_LE(worse(shifted({0, 0, 0.002}), pose_), 0);
 }
 
+TEST_F(ComparePoses, AsksNoFurtherOnceItIsClear) {
+  const Sighting sighting(scene_.tables, scene_.surface, scene_.projector, scene_.tolerance);
+  const auto ask = [&](const RigidTransform& other, double clear) {
+    return worse_by(scene_.tables, scene_.patches, sighting, scene_.points, {0, nullptr, true, clear}, pose_,
+                    other);
+  };
+  const RigidTransform far = shifted({0, 0, 0.004}), near = shifted({0, 0, 0.001});
+  ASSERT_GT(worse(pose_, far), 0.4);
+  EXPECT_GT(ask(far, 0.3), 0.3);
+  EXPECT_NE(ask(far, 0.3), worse(pose_, far)) << "a few points, not all";
+  ASSERT_LT(worse(pose_, near), 0.3);
+  EXPECT_EQ(ask(near, 0.3), worse(pose_, near));
+}
+
 TEST_F(ComparePoses, AWholeLimitAwayCostsNoMoreThanTheLimit) {
   EXPECT_LE(worse(pose_, shifted({0, 0, 0.03})), 1);
 }

@@ -97,6 +97,12 @@ TEST_F(PartSearch, APieceOfABendIsNoPart) {
   EXPECT_FALSE(find([](double x) { return x > 0.02 ? 4.0 : 0.0; }));
 }
 
+TEST_F(PartSearch, TheStraightEndOfALongBendIsNoPart) {
+  for (const double from : {0.02, 0.03})
+    for (const double curvature : {8.0, 10.0})
+      EXPECT_FALSE(find([&](double x) { return x > from && x < 0.1 ? curvature : 0.0; })) << from;
+}
+
 TEST_F(PartSearch, APieceIsBetterThanARegionThatHasLostItsHold) {
   EXPECT_TRUE(find([](double x) { return std::fabs(x) > 0.01 ? 4.0 : 0.0; }));
 }
