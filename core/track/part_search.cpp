@@ -86,7 +86,7 @@ std::size_t pick_seeds(const PatchTables& patches, const PatchWarp& warp, std::i
 constexpr double kMoved = 0.6;
 
 /// A part explains this much of what moved about it: around a joint that is all but the skin there. Of what
-/// bends, one motion explains a piece, of an ear that is pressed up to two thirds.
+/// bends, one motion explains a piece: of a pressed ear seldom more than two thirds.
 constexpr double kMostOfWhatMoved = 0.7;
 
 /// Share of what moved by `least` or more, connected with the part, that is of the part.

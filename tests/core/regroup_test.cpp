@@ -84,6 +84,19 @@ TEST_F(Hinge, LeavesAStillObjectWhole) {
     }
 }
 
+TEST_F(Hinge, OneFrameMakesNoPart) {
+  settings_.split_after = 1000;
+  bend_to(0, 0.4);
+  ASSERT_EQ(alive(), 1);
+  settings_ = RegroupSettings();
+  state_ = RegroupState();
+  for (int frame = 1; frame < settings_.split_after; ++frame)
+    EXPECT_FALSE(frame_at(0.4)) << "after " << frame;
+  EXPECT_EQ(state_.suspected[0], settings_.split_after - 1);
+  EXPECT_TRUE(frame_at(0.4));
+  EXPECT_EQ(alive(), 2);
+}
+
 TEST_F(Hinge, MakesNoMoreRegionsThanAllowed) {
   settings_.max_regions = 1;
   bend_to(0, 0.4);
