@@ -53,7 +53,8 @@ struct TrackResult {
   RigidTransform pose;     ///< the base region, camera <- model, metres
   std::span<const Region> regions;  ///< base first (when observed), then ascending ids
   std::span<const Point3f>
-      positions;  ///< camera frame, metres; of a rigid point within the inlier limit of its region
+      positions;  ///< camera frame, metres; of a rigid point within the inlier limit of where its region puts
+                  ///< it, or off that by what the surface has been off the model there
   std::span<const std::int8_t> labels;    ///< region id, kDeformed or kNotObserved
   std::span<const std::int32_t> matches;  ///< pixel v * width + u, -1 none
   std::span<const float> residuals;       ///< distance to the matched reading, metres; 0 without a match

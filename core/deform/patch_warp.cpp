@@ -99,8 +99,6 @@ void add_ties(const PatchTables& patches, const Material& material, PatchWarp& w
   }
 }
 
-/// What smoothing over nine pixels leaves of σ: residuals below it tell no place from another.
-constexpr double kSmoothedNoise = 0.35;
 /// Mean squares of a dozen readings differ by half of themselves by chance.
 constexpr double kByChance = 1.4;
 

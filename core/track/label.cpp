@@ -6,6 +6,7 @@
 
 #include "core/deform/radius_search.hpp"
 #include "core/fixed/integer_root.hpp"
+#include "core/track/model_error.hpp"
 #include "core/track/placed_points.hpp"
 #include "core/track/sight.hpp"
 
@@ -102,13 +103,13 @@ std::int32_t distance_of(const IntPoint& a, const IntPoint& b) noexcept {
 }
 
 /// Where a patch's readings take a point is known better than any one of them tells: three quarters of the
-/// inlier limit, `limit`, 3 σ or more, put it off its region, which has it at `rigid`.
+/// inlier limit, `limit`, 3 σ or more, put it off its region, which has it where `at_home` looks.
 Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sighting& sighting,
-                const IntPoint& rigid, std::int32_t limit, std::int8_t region, const Sighting::Look& at_home,
+                std::int32_t limit, std::int8_t region, const Sighting::Look& at_home,
                 std::size_t i) noexcept {
   Verdict verdict;
   verdict.look = at_home;
-  verdict.rigid = rigid;
+  verdict.rigid = at_home.point;
   if (const std::size_t p = context.patches.patch_of[i];
       context.warp.rigid[p] && context.warp.home[p] == region) {
     verdict.warped = verdict.rigid;
@@ -138,22 +139,20 @@ Verdict examine(const LabelContext& context, const WarpLanes& lanes, const Sight
 }
 
 /// Where the point is: with its region, and the more with the warp the nearer that comes to the inlier limit;
-/// a deformed point altogether, on its reading.
-IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit) noexcept {
+/// a deformed point altogether, on its reading. Without one, off the model by `error` (1/16 mm) along its
+/// normal.
+IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit, std::int32_t error) noexcept {
   const IntPoint &r = verdict.rigid, &w = verdict.warped;
-  if (label == kDeformed) {
-    const std::int32_t off = verdict.look.sight == Sight::agrees ? verdict.look.residual : 0;
-    const IntPoint& n = verdict.look.normal;
-    return {w.x + ((n.x * off + 8192) >> 14), w.y + ((n.y * off + 8192) >> 14),
-            w.z + ((n.z * off + 8192) >> 14)};
-  }
+  if (label == kDeformed)
+    return moved_along(w, verdict.look.normal,
+                       verdict.look.sight == Sight::agrees ? verdict.look.residual : error);
   // small differences are noise; a rigid point stays within the limit
   const std::int32_t whole = label >= 0 ? std::max(verdict.distance, limit) : limit;
   const std::int32_t share = (std::min(verdict.distance, limit) << 14) / whole;  // Q14
   const auto part = [&](std::int32_t from, std::int32_t to) {
     return from + static_cast<std::int32_t>((static_cast<std::int64_t>(to - from) * share + 8192) >> 14);
   };
-  return {part(r.x, w.x), part(r.y, w.y), part(r.z, w.z)};
+  return moved_along({part(r.x, w.x), part(r.y, w.y), part(r.z, w.z)}, verdict.look.normal, error);
 }
 
 /// Labels points one by one, and counts how they were seen.
@@ -166,6 +165,7 @@ class Labeller {
         poses_(fixed_poses(regions, context.model.centre)),
         lanes_(lanes_of(context.patches, context.warp)),
         sighting_(context.model, context.surface, context.projector, context.tolerance),
+        noise_(context.tolerance.smoothed_noise(depth_of(regions[0].pose, context.model.centre))),
         several_(count_alive(regions) > 1) {}
 
   /// Every point; patch by patch, so that what stands together is placed together.
@@ -204,12 +204,14 @@ class Labeller {
         consider_rivals(model, regions_, sighting_, poses_, context_.tolerance.deformed(look.point.z), look,
                         enough_to_switch, points_, i))
       look = at_home(i);
-    IntPoint rigid = look.point;
     if (several_ && look.sight == Sight::none &&
-        carry_where_allowed(model, regions_, sighting_, poses_, points_, i))
-      rigid = poses_[static_cast<std::size_t>(points_.home[i])].point(model.x[i], model.y[i], model.z[i]);
-    const std::int32_t limit = context_.tolerance.deformed(rigid.z);
-    const Verdict verdict = examine(context_, lanes_, sighting_, rigid, limit, points_.home[i], look, i);
+        carry_where_allowed(model, regions_, sighting_, poses_, points_, i)) {
+      const FixedPose& pose = poses_[static_cast<std::size_t>(points_.home[i])];
+      look.point = pose.point(model.x[i], model.y[i], model.z[i]);
+      look.normal = pose.direction(model.nx[i], model.ny[i], model.nz[i]);
+    }
+    const std::int32_t limit = context_.tolerance.deformed(look.point.z);
+    const Verdict verdict = examine(context_, lanes_, sighting_, limit, points_.home[i], look, i);
     weigh(i, verdict);
     decide(i, verdict, look.sight, limit);
   }
@@ -243,9 +245,10 @@ class Labeller {
     counts_.deformed += label == kDeformed && sight == Sight::agrees ? 1 : 0;
     points_.label[i] = label;
     points_.sight[i] = sight;
-    points_.residual[i] = label == kDeformed ? 0 : verdict.look.residual;
+    const std::int32_t error = model_error(points_.misfit[i], noise_, limit);
+    points_.residual[i] = label == kDeformed ? 0 : verdict.look.residual - error;
     points_.match[i] = sight == Sight::agrees ? verdict.look.match : -1;
-    points_.position[i] = place(verdict, label, limit);
+    points_.position[i] = place(verdict, label, limit, error);
     const IntPoint &r = verdict.rigid, &at = points_.position[i];
     points_.offset[i] = {at.x - r.x, at.y - r.y, at.z - r.z};
   }
@@ -256,6 +259,7 @@ class Labeller {
   RegionPoses poses_;
   WarpLanes lanes_;
   Sighting sighting_;
+  std::int32_t noise_;  ///< Tolerance::smoothed_noise at the object
   bool several_;
   SightCounts counts_;
 };

@@ -4,6 +4,7 @@
 
 #include "core/track/compare_poses.hpp"
 #include "core/track/hand_over.hpp"
+#include "core/track/model_error.hpp"
 #include "core/track/part_split.hpp"
 #include "core/track/region_tree.hpp"
 
@@ -132,13 +133,17 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
 /// region, or all of them. Those that are seen elsewhere stay there, as deformed ones.
 void settle(const RegroupContext& context, const RegionSet& regions, bool all, PointState& points) noexcept {
   const RegionPoses poses = fixed_poses(regions, context.model.centre);
+  const std::int32_t noise =
+      context.tolerance.smoothed_noise(depth_of(regions[0].pose, context.model.centre));
   for (std::size_t i = 0; i < context.model.size; ++i) {
     if (points.label[i] < 0 || (!all && points.label[i] == points.home[i])) continue;
     const Sighting::Look look = context.sighting.look(i, poses[static_cast<std::size_t>(points.home[i])]);
     if (look.sight == Sight::agrees) {
+      const std::int32_t error =
+          model_error(points.misfit[i], noise, context.tolerance.deformed(look.point.z));
       points.label[i] = points.home[i];
-      points.position[i] = look.point;
-      points.residual[i] = look.residual;
+      points.position[i] = moved_along(look.point, look.normal, error);
+      points.residual[i] = look.residual - error;
       points.match[i] = look.match;
     } else {
       points.label[i] = kDeformed;

@@ -120,6 +120,9 @@ inline constexpr std::int32_t kMisfitFirstFrames = 4;
 /// of it, 1/16 mm: 512 mm. What integer kernels rest their overflow bounds on.
 inline constexpr std::int32_t kFarthestReading = 8191;
 
+/// What smoothing over nine pixels leaves of σ: residuals below it tell no place from another.
+inline constexpr double kSmoothedNoise = 0.35;
+
 /// Lengths that a frame's decisions rest on, from the model's spacing and the sensor's noise.
 struct Tolerance {
   const Surface* surface = nullptr;
@@ -128,6 +131,11 @@ struct Tolerance {
   /// there, at most kFarthestReading.
   [[nodiscard]] std::int32_t deformed(std::int32_t z16) const noexcept {
     return std::min(std::max(4 * surface->sigma(z16), spacing), kFarthestReading);
+  }
+  /// kSmoothedNoise of the depth there.
+  [[nodiscard]] std::int32_t smoothed_noise(std::int32_t z16) const noexcept {
+    constexpr auto kShare = static_cast<std::int32_t>(kSmoothedNoise * 1024);
+    return (std::min(surface->sigma(z16), kFarthestReading) * kShare) >> 10;
   }
 };
 

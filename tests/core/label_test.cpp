@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "core/track/model_error.hpp"
 #include "core/track/sight.hpp"
 #include "tests/core/shared_scene.hpp"
 
@@ -59,6 +60,48 @@ TEST_F(Label, AllThatIsSeenAgreesAtTheTruePose) {
     ASSERT_GT(z8, 0);
     const IntPoint q = scene().surface.vertex(u, v, z8), p = scene().points.position[i];
     ASSERT_LT(std::abs(q.x - p.x) + std::abs(q.y - p.y), 30 * kUnitsPerMillimetre);
+  }
+}
+
+TEST_F(Label, PointsStandWhereTheSurfaceIsFoundOffTheModel) {
+  constexpr double kPadding = 0.003;  // metres
+  ASSERT_LT(kPadding, limit());
+  for (const double padding : {0.0, kPadding}) {
+    SetUp();
+    Picture picture(scene().camera);
+    picture.draw(scene().mesh, usual_pose(),
+                 [&](const Vector3& p) { return Vector3(p + padding * p.normalized()); });
+    picture.wall(1.6);
+    scene().see(picture);
+    frames(6);
+    std::size_t rigid = 0, in_place = 0;
+    for (std::size_t i = 0; i < scene().tables.size; ++i) {
+      if (scene().points.label[i] != 0) continue;
+      const Vector3 normal = scene().normal(usual_pose(), i);
+      if (normal.z() > -0.7) continue;  // square to the line of sight, where readings tell the most
+      const IntPoint& p = scene().points.position[i];
+      const Vector3 from_region = Vector3(p.x, p.y, p.z) / kUnitsPerMetre - usual_pose() * scene().rest(i);
+      const double outwards = padding * normal.dot(usual_pose().rotation * scene().rest(i).normalized());
+      ++rigid;
+      in_place += (from_region - outwards * normal).norm() < 0.0007 ? 1U : 0U;
+    }
+    EXPECT_GT(rigid, 300U);
+    EXPECT_GT(in_place, rigid * 9 / 10) << padding;
+  }
+}
+
+TEST(ModelError, IsNothingWithinTheNoiseAndAllOfWhatIsTwiceThat) {
+  constexpr std::int32_t kNoise = 10, kLimit = 64;  // 1/16 mm
+  EXPECT_EQ(model_error(kNoise * 16, kNoise, kLimit), 0);
+  EXPECT_EQ(model_error(-kNoise * 16, kNoise, kLimit), 0);
+  EXPECT_EQ(model_error(kNoise * 24, kNoise, kLimit), kNoise);
+  EXPECT_EQ(model_error(kNoise * 40, kNoise, kLimit), 25);
+  EXPECT_EQ(model_error(kNoise * 400, kNoise, kLimit), kLimit);
+  for (std::int32_t misfit = -2000; misfit < 2000; ++misfit) {
+    const std::int32_t error = model_error(misfit, kNoise, kLimit);
+    EXPECT_EQ(error, -model_error(-misfit, kNoise, kLimit)) << misfit;
+    const std::int32_t step = model_error(misfit + 1, kNoise, kLimit) - error;
+    EXPECT_TRUE(step == 0 || step == 1) << misfit;
   }
 }
 

@@ -76,13 +76,14 @@ TEST_F(RadiusSearch, MatchesWithinTheRadiusAndSaysHowFar) {
 }
 
 TEST_F(RadiusSearch, LeavesRigidPointsWhereTheyAre) {
-  std::vector<IntPoint> before(scene_.points.position.begin(), scene_.points.position.end());
+  const std::vector<IntPoint> before(scene_.points.position.begin(), scene_.points.position.end()),
+      offsets(scene_.points.offset.begin(), scene_.points.offset.end());
   search();
   for (std::size_t i = 0; i < scene_.tables.size; ++i) {
     if (scene_.points.label[i] < 0) continue;
     ASSERT_EQ(scene_.points.position[i].x, before[i].x);
     ASSERT_EQ(scene_.points.position[i].z, before[i].z);
-    ASSERT_EQ(scene_.points.offset[i].z, 0);
+    ASSERT_EQ(scene_.points.offset[i].z, offsets[i].z);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/track/associate.hpp"
 #include "core/track/borders.hpp"
 #include "core/track/label.hpp"
+#include "core/track/model_error.hpp"
 #include "core/track/patches.hpp"
 #include "core/track/predict.hpp"
 #include "core/track/track_state.hpp"
@@ -102,6 +103,11 @@ class TrackScene {
     const FixedPose fixed(pose, tables.centre);
     const IntPoint n = fixed.direction(tables.nx[i], tables.ny[i], tables.nz[i]);
     return Vector3(n.x, n.y, n.z) / 16384;
+  }
+  /// How far off the model the surface is taken to be at point i, 1/16 mm.
+  [[nodiscard]] std::int32_t model_error_at(std::size_t i) const {
+    const std::int32_t z = depth_of(regions[0].pose, tables.centre);
+    return model_error(points.misfit[i], tolerance.smoothed_noise(z), tolerance.deformed(z));
   }
   /// How far off `truth` the warp of `lanes` puts point i, metres.
   [[nodiscard]] double off(const WarpLanes& lanes, std::size_t i, const Vector3& truth) const {
