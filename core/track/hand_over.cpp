@@ -27,17 +27,21 @@ void trade(const RegroupContext& context, RegroupState& state, RegionSet& region
 bool hand_over_base(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
                     RegionSet& regions, PointState& points) noexcept {
   std::size_t largest = 0;
-  for (std::size_t k = 1; k < regions.size(); ++k)
-    if (regions[k].alive && regions[k].members > regions[largest].members) largest = k;
-  state.outgrown = regions[largest].members > 4 * regions[0].members ? state.outgrown + 1 : 0;
+  std::uint32_t all = 0;
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (!regions[k].alive) continue;
+    all += regions[k].facing;
+    if (regions[k].facing > regions[largest].facing) largest = k;
+  }
+  const std::uint32_t base = regions[0].facing;
+  const bool outgrown = 3 * base < all && 2 * regions[largest].facing > 3 * base;
+  state.outgrown = outgrown ? state.outgrown + 1 : 0;
   if (state.outgrown < settings.merge_after) return false;
   state.outgrown = 0;
   trade(context, state, regions, points, 0, static_cast<std::int8_t>(largest));
-  TrackedRegion& base = regions[0];
-  TrackedRegion& child = regions[largest];
   // the tree turns over: what the base hung on now hangs on it
-  base.parent = -1;
-  child.parent = 0;
+  regions[0].parent = -1;
+  regions[largest].parent = 0;
   for (std::size_t k = 1; k < regions.size(); ++k) {
     if (!regions[k].alive) continue;
     if (regions[k].parent < 0) regions[k].parent = 0;

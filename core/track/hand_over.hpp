@@ -5,9 +5,10 @@
 
 namespace pliant {
 
-/// The base is the largest body, as it was at first: where another region is far larger than it for as many
-/// frames as two regions take to merge, that one takes its place and id, and what the base hung on hangs on
-/// it. True when it did.
+/// The base is the largest body towards the camera, as it was at first, so that its pose rests on many
+/// readings: where it holds less than a third of the points that face the camera, hidden ones or not, and
+/// another region half as many again, for as many frames as two regions take to merge, that one takes its
+/// place and id, and what the base hung on hangs on it. True when it did.
 bool hand_over_base(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
                     RegionSet& regions, PointState& points) noexcept;
 

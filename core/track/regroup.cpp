@@ -155,9 +155,12 @@ void settle(const RegroupContext& context, const RegionSet& regions, bool all, P
 
 bool regroup(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
              RegionSet& regions, PointState& points) noexcept {
-  for (TrackedRegion& region : regions) region.members = 0;
-  for (std::size_t i = 0; i < context.model.size; ++i)
-    ++regions[static_cast<std::size_t>(points.home[i])].members;
+  for (TrackedRegion& region : regions) region.members = region.facing = 0;
+  for (std::size_t i = 0; i < context.model.size; ++i) {
+    TrackedRegion& region = regions[static_cast<std::size_t>(points.home[i])];
+    ++region.members;
+    region.facing += points.sight[i] != Sight::none ? 1U : 0U;
+  }
   const bool switched = switch_patches(context, state, regions, points);
   bool changed = hand_over_base(context, settings, state, regions, points) ||
                  merge(context, settings, state, regions, points);

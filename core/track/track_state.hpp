@@ -36,6 +36,7 @@ struct TrackedRegion {
   RigidTransform from_parent;  ///< parent's model frame <- this region's: how it moved against its parent
   std::uint32_t points = 0;    ///< that bear its label in this frame
   std::uint32_t members = 0;   ///< model points whose home it is
+  std::uint32_t facing = 0;    ///< of those, that face the camera with a reading, be it of what hides them
   std::int32_t scale = 0;      ///< robust spread of its residuals, 1/16 mm
   double rms = 0;              ///< metres
   int frames_unseen = 0;       ///< frames in a row without enough readings

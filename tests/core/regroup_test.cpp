@@ -144,6 +144,30 @@ TEST_F(Hinge, TheLargestBodyBecomesTheBaseWhenItHasShrunk) {
   EXPECT_EQ(scene().regions[2].parent, 0);
 }
 
+TEST_F(Hinge, ABaseThatSomethingHidesStaysTheBase) {
+  bend_to(0, 0.4);
+  ASSERT_EQ(alive(), 2);
+  std::size_t right_end = 0;
+  for (std::size_t i = 0; i < scene().tables.size; ++i)
+    if (scene().rest(i).x() > scene().rest(right_end).x()) right_end = i;
+  if (scene().points.home[right_end] != 0) {
+    std::swap(scene().regions[0], scene().regions[1]);
+    scene().regions[0].parent = -1;
+    scene().regions[1].parent = 0;
+    for (std::int8_t& home : scene().points.home) home = home == 0 ? std::int8_t{1} : std::int8_t{0};
+  }
+  const int just_right_of_the_hinge = scene().camera.width * 9 / 16;
+  for (int frame = 0; frame < 2 * settings_.merge_after; ++frame)
+    (void)frame_at(0.4, 0.001, just_right_of_the_hinge);
+  std::size_t base = 0, rigid = 0;
+  for (const std::int8_t label : scene().points.label) {
+    base += label == 0 ? 1U : 0U;
+    rigid += label >= 0 ? 1U : 0U;
+  }
+  EXPECT_LT(base * 4, rigid);
+  EXPECT_EQ(scene().points.home[right_end], 0);
+}
+
 TEST_F(Hinge, DissolvesARegionThatTearsOff) {
   bend_to(0, 0.4);
   ASSERT_EQ(alive(), 2);
