@@ -46,7 +46,9 @@ void hold_steady(const ModelTables& model, const Surface& surface, std::int32_t 
   for (TrackedRegion& region : regions) {
     if (!region.alive) continue;
     const double depth = (region.last_pose * model.centre).z() * kUnitsPerMetre;
-    const double noise = kNoiseOfPose * surface.sigma(static_cast<std::int32_t>(depth)) / kUnitsPerMetre;
+    const std::int32_t spread =
+        spread_of_readings(surface.sigma(static_cast<std::int32_t>(depth)), region.scale);
+    const double noise = kNoiseOfPose * spread / kUnitsPerMetre;
     region.pose = steadied(region.last_pose, region.pose, model.centre, half_radius, noise, region.steps,
                            least_share(frames));
   }

@@ -1,12 +1,21 @@
 // What stands still is held still: noise alone moves nothing.
 #pragma once
 
+#include <algorithm>
+
 #include "core/track/track_state.hpp"
 
 namespace pliant {
 
 /// How much of the sensor's σ is left in a pose from many readings.
 inline constexpr double kNoiseOfPose = 0.5;
+
+/// How far readings that a region's pose rests on lie off it, 1/16 mm, `sigma` being the sensor's: where the
+/// model is off the object, by more than the sensor's noise (`scale`, TrackedRegion::scale), and which of
+/// them weigh how much wanders with the noise. What is off by more than the inlier test's 4 σ weighs nothing.
+[[nodiscard]] constexpr std::int32_t spread_of_readings(std::int32_t sigma, std::int32_t scale) noexcept {
+  return std::clamp(scale, sigma, 4 * sigma);
+}
 
 /// The part of the motion from `before` to `after` that noise does not explain: a share s² / (s² + n²) of it,
 /// s being how far it moves a body of radius 2 · `half_radius` about `centre` (model frame, metres) in the

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "tests/core/synthetic.hpp"
+#include "tests/core/shared_scene.hpp"
 
 namespace pliant {
 namespace {
@@ -161,6 +161,35 @@ TEST(Steadied, LeavesAThirdOfNoiseAsLargeAsExpected) {
     noise_squares += noise.squaredNorm();
   }
   EXPECT_LT(9 * squares, noise_squares);
+}
+
+TEST(SpreadOfReadings, IsTheSensorsUnlessTheModelIsOffTheObject) {
+  EXPECT_EQ(spread_of_readings(20, 0), 20);
+  EXPECT_EQ(spread_of_readings(20, 20), 20);
+  EXPECT_EQ(spread_of_readings(20, 50), 50);
+  EXPECT_EQ(spread_of_readings(20, 500), 80) << "farther readings weigh nothing";
+}
+
+class HoldSteady : public synthetic::SharedScene<synthetic::bumpy_body> {};
+
+TEST_F(HoldSteady, AStepIsJudgedByHowFarTheReadingsLieOffTheRegion) {
+  const RigidTransform pose = synthetic::usual_pose();
+  const auto depth = static_cast<std::int32_t>((pose * scene().model.centre()).z() * kUnitsPerMetre);
+  const std::int32_t sigma = scene().surface.sigma(depth);
+  // three times what is left of the sensor's noise: half of it counts
+  const Vector3 step(3 * kNoiseOfPose * sigma / kUnitsPerMetre, 0, 0);
+  const auto share_taken = [&](std::int32_t scale) {
+    scene().place(pose);
+    TrackedRegion& region = scene().regions[0];
+    region.scale = scale;
+    region.pose.translation += step;
+    hold_steady(scene().tables, scene().surface, 2 * kMisfitFirstFrames, scene().regions);
+    return (region.pose.translation - pose.translation).norm() / step.norm();
+  };
+  EXPECT_NEAR(share_taken(0), 0.5, 0.01);
+  EXPECT_NEAR(share_taken(sigma / 2), 0.5, 0.01);
+  EXPECT_NEAR(share_taken(3 * sigma), 0.1, 0.01);
+  EXPECT_NEAR(share_taken(100 * sigma), 1.0 / 17, 0.01);
 }
 
 }  // namespace
