@@ -129,6 +129,15 @@ bool merge(const RegroupContext& context, const RegroupSettings& settings, Regro
   return false;
 }
 
+void count_members(const ModelTables& model, const PointState& points, RegionSet& regions) noexcept {
+  for (TrackedRegion& region : regions) region.members = region.facing = 0;
+  for (std::size_t i = 0; i < model.size; ++i) {
+    TrackedRegion& region = regions[static_cast<std::size_t>(points.home[i])];
+    ++region.members;
+    region.facing += points.sight[i] != Sight::none ? 1U : 0U;
+  }
+}
+
 /// Rigid points bear the label of the region that they belong to now, where it puts them: those that changed
 /// region, or all of them. Those that are seen elsewhere stay there, as deformed ones.
 void settle(const RegroupContext& context, const RegionSet& regions, bool all, PointState& points) noexcept {
@@ -155,16 +164,18 @@ void settle(const RegroupContext& context, const RegionSet& regions, bool all, P
 
 bool regroup(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
              RegionSet& regions, PointState& points) noexcept {
-  for (TrackedRegion& region : regions) region.members = region.facing = 0;
-  for (std::size_t i = 0; i < context.model.size; ++i) {
-    TrackedRegion& region = regions[static_cast<std::size_t>(points.home[i])];
-    ++region.members;
-    region.facing += points.sight[i] != Sight::none ? 1U : 0U;
-  }
+  count_members(context.model, points, regions);
   const bool switched = switch_patches(context, state, regions, points);
   bool changed = hand_over_base(context, settings, state, regions, points) ||
                  merge(context, settings, state, regions, points);
-  changed = changed || split_parts(context, settings, state, regions, points);
+  if (!changed && split_parts(context, settings, state, regions, points)) {
+    changed = true;
+    // the larger of what was the base stays the base
+    count_members(context.model, points, regions);
+    RegroupSettings at_once = settings;
+    at_once.merge_after = 1;
+    (void)hand_over_base(context, at_once, state, regions, points);
+  }
   if (switched || changed) settle(context, regions, changed, points);
   return changed;
 }

@@ -144,6 +144,35 @@ TEST_F(Hinge, TheLargestBodyBecomesTheBaseWhenItHasShrunk) {
   EXPECT_EQ(scene().regions[2].parent, 0);
 }
 
+TEST_F(Hinge, OfWhatSplitsTheLargerStaysTheBase) {
+  // three quarters of the bar have turned, with the warp; the base, which is not aligned here, is the rest
+  std::size_t left = 0, right = 0;
+  for (std::size_t i = 0; i < scene().tables.size; ++i) {
+    if (scene().rest(i).x() < scene().rest(left).x()) left = i;
+    if (scene().rest(i).x() > scene().rest(right).x()) right = i;
+  }
+  const Vector3 hinge(0.5 * scene().rest(left).x(), 0, 0);
+  const Matrix3 turn = bend(0.2);
+  Picture picture(scene().camera);
+  picture.draw(scene().mesh, pose(),
+               [&](const Vector3& p) { return p.x() > hinge.x() ? Vector3(hinge + turn * (p - hinge)) : p; });
+  picture.wall(1.5);
+  scene().see(picture);
+  for (std::size_t p = 0; p < scene().patches.count; ++p)
+    if (scene().patches.centres[p].x() > hinge.x())
+      scene().warp->pose[p] = pose() * RigidTransform{turn, hinge - turn * hinge};
+  for (int frame = 0; frame < settings_.split_after && alive() == 1; ++frame) {
+    scene().warp_now();
+    (void)scene().look_now();
+    (void)regroup_now();
+  }
+  ASSERT_EQ(alive(), 2);
+  EXPECT_EQ(scene().points.home[right], 0);
+  EXPECT_EQ(scene().points.home[left], 1);
+  EXPECT_EQ(scene().regions[0].parent, -1);
+  EXPECT_EQ(scene().regions[1].parent, 0);
+}
+
 TEST_F(Hinge, ABaseThatSomethingHidesStaysTheBase) {
   bend_to(0, 0.4);
   ASSERT_EQ(alive(), 2);
