@@ -24,8 +24,8 @@ void trade(const RegroupContext& context, RegroupState& state, RegionSet& region
 
 }  // namespace
 
-bool hand_over_base(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
-                    RegionSet& regions, PointState& points) noexcept {
+bool hand_over_base(const RegroupContext& context, int frames, RegroupState& state, RegionSet& regions,
+                    PointState& points) noexcept {
   std::size_t largest = 0;
   std::uint32_t all = 0;
   for (std::size_t k = 0; k < regions.size(); ++k) {
@@ -36,7 +36,7 @@ bool hand_over_base(const RegroupContext& context, const RegroupSettings& settin
   const std::uint32_t base = regions[0].facing;
   const bool outgrown = 3 * base < all && 2 * regions[largest].facing > 3 * base;
   state.outgrown = outgrown ? state.outgrown + 1 : 0;
-  if (state.outgrown < settings.merge_after) return false;
+  if (state.outgrown < frames) return false;
   state.outgrown = 0;
   trade(context, state, regions, points, 0, static_cast<std::int8_t>(largest));
   // the tree turns over: what the base hung on now hangs on it

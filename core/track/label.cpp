@@ -146,7 +146,7 @@ IntPoint place(const Verdict& verdict, std::int8_t label, std::int32_t limit, st
   if (label == kDeformed)
     return moved_along(w, verdict.look.normal,
                        verdict.look.sight == Sight::agrees ? verdict.look.residual : error);
-  // small differences are noise; a rigid point stays within the limit
+  // small differences are noise; the warp moves a rigid point by no more than the limit
   const std::int32_t whole = label >= 0 ? std::max(verdict.distance, limit) : limit;
   const std::int32_t share = (std::min(verdict.distance, limit) << 14) / whole;  // Q14
   const auto part = [&](std::int32_t from, std::int32_t to) {

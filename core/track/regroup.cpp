@@ -166,15 +166,13 @@ bool regroup(const RegroupContext& context, const RegroupSettings& settings, Reg
              RegionSet& regions, PointState& points) noexcept {
   count_members(context.model, points, regions);
   const bool switched = switch_patches(context, state, regions, points);
-  bool changed = hand_over_base(context, settings, state, regions, points) ||
+  bool changed = hand_over_base(context, settings.merge_after, state, regions, points) ||
                  merge(context, settings, state, regions, points);
   if (!changed && split_parts(context, settings, state, regions, points)) {
     changed = true;
     // the larger of what was the base stays the base
     count_members(context.model, points, regions);
-    RegroupSettings at_once = settings;
-    at_once.merge_after = 1;
-    (void)hand_over_base(context, at_once, state, regions, points);
+    (void)hand_over_base(context, 1, state, regions, points);
   }
   if (switched || changed) settle(context, regions, changed, points);
   return changed;

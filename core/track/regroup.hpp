@@ -38,7 +38,8 @@ struct RegroupContext {
 /// Lets patches go over to a neighbouring region that suits them better, makes one of regions that one motion
 /// suits as well as two, or else makes a region of a part that the warp takes along a rigid motion of its
 /// own. Each needs some frames in a row. Where another region has become far larger than the base, as a
-/// bending object's may shrink, that one takes its place. True when a region came or went.
+/// bending object's may shrink, that one takes its place; at once where a part turns out to be the larger
+/// half. True when a region came or went.
 bool regroup(const RegroupContext& context, const RegroupSettings& settings, RegroupState& state,
              RegionSet& regions, PointState& points) noexcept;
 

@@ -10,9 +10,9 @@ namespace pliant {
 /// How much of the sensor's σ is left in a pose from many readings.
 inline constexpr double kNoiseOfPose = 0.5;
 
-/// How far readings that a region's pose rests on lie off it, 1/16 mm, `sigma` being the sensor's: where the
-/// model is off the object, by more than the sensor's noise (`scale`, TrackedRegion::scale), and which of
-/// them weigh how much wanders with the noise. What is off by more than the inlier test's 4 σ weighs nothing.
+/// What a region's readings are spread by, 1/16 mm: the sensor's σ, `sigma`, or, where the model is off the
+/// object by more, `scale` (TrackedRegion::scale), since noise then decides which of them weigh how much. At
+/// most the 4 σ of the inlier test.
 [[nodiscard]] constexpr std::int32_t spread_of_readings(std::int32_t sigma, std::int32_t scale) noexcept {
   return std::clamp(scale, sigma, 4 * sigma);
 }

@@ -49,6 +49,13 @@ class Hinge : public SharedScene<two_part_bar, 5> {
   void bend_to(double from, double to) {
     for (int step = 0; step <= 20; ++step) (void)frame_at(from + (to - from) * step / 20);
   }
+  /// The model point farthest to the right (side 1) or left (-1).
+  static std::size_t end_of_bar(int side) {
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < scene().tables.size; ++i)
+      if (side * scene().rest(i).x() > side * scene().rest(end).x()) end = i;
+    return end;
+  }
   static std::int64_t alive() {
     return std::count_if(scene().regions.begin(), scene().regions.end(),
                          [](const TrackedRegion& r) { return r.alive; });

@@ -146,11 +146,7 @@ TEST_F(Hinge, TheLargestBodyBecomesTheBaseWhenItHasShrunk) {
 
 TEST_F(Hinge, OfWhatSplitsTheLargerStaysTheBase) {
   // three quarters of the bar have turned, with the warp; the base, which is not aligned here, is the rest
-  std::size_t left = 0, right = 0;
-  for (std::size_t i = 0; i < scene().tables.size; ++i) {
-    if (scene().rest(i).x() < scene().rest(left).x()) left = i;
-    if (scene().rest(i).x() > scene().rest(right).x()) right = i;
-  }
+  const std::size_t left = end_of_bar(-1), right = end_of_bar(1);
   const Vector3 hinge(0.5 * scene().rest(left).x(), 0, 0);
   const Matrix3 turn = bend(0.2);
   Picture picture(scene().camera);
@@ -176,9 +172,7 @@ TEST_F(Hinge, OfWhatSplitsTheLargerStaysTheBase) {
 TEST_F(Hinge, ABaseThatSomethingHidesStaysTheBase) {
   bend_to(0, 0.4);
   ASSERT_EQ(alive(), 2);
-  std::size_t right_end = 0;
-  for (std::size_t i = 0; i < scene().tables.size; ++i)
-    if (scene().rest(i).x() > scene().rest(right_end).x()) right_end = i;
+  const std::size_t right_end = end_of_bar(1);
   if (scene().points.home[right_end] != 0) {
     std::swap(scene().regions[0], scene().regions[1]);
     scene().regions[0].parent = -1;
