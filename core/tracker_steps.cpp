@@ -8,6 +8,7 @@
 #include "core/track/associate.hpp"
 #include "core/track/borders.hpp"
 #include "core/track/joints.hpp"
+#include "core/track/narrowing.hpp"
 #include "core/track/predict.hpp"
 #include "core/track/regain_hold.hpp"
 #include "core/track/steady.hpp"
@@ -38,19 +39,17 @@ std::uint32_t fewest_region_points(const TrackerState& s) noexcept {
   return std::max<std::uint32_t>(48, static_cast<std::uint32_t>(s.tables.size / 100));
 }
 
-/// One round of association and alignment; readings farther off than `widest` weigh nothing.
-void round_of_alignment(TrackerState& s, std::size_t points, std::int32_t gate, std::int32_t widest,
-                        const AlignSettings& base = {}) noexcept {
-  AssociateSettings associate_settings;
-  associate_settings.points = points;
-  associate_settings.gate = gate;
-  associate(s.tables, s.surface, s.projector, s.regions, associate_settings, s.points);
+/// One round of association and alignment.
+AlignSteps round_of_alignment(TrackerState& s, const SearchReaches& reaches,
+                              AlignSettings settings) noexcept {
+  associate(s.tables, s.surface, s.projector, s.regions, reaches, s.points);
   finish_stage(s, Stage::associate);
-  AlignSettings align_settings = base;
-  align_settings.widest = widest;
-  align_settings.robust = s.settings.steps.robust_weights;
-  align(s.surface, align_settings, find_joints(s.patches, s.warp, s.regions), s.points, s.regions);
+  settings.half_radius = 0.5 * s.tables.model->radius();
+  settings.robust = s.settings.steps.robust_weights;
+  const AlignSteps steps =
+      align(s.surface, settings, find_joints(s.patches, s.warp, s.regions), s.points, s.regions);
   finish_stage(s, Stage::align);
+  return steps;
 }
 
 /// The inlier test's limit at the base region's depth.
@@ -93,10 +92,17 @@ void align_regions(TrackerState& s) noexcept {
   // Last rounds trust only what fits well within what the inlier test will call rigid: a part that moved on,
   // or a bend, must not drag the rest.
   const std::int32_t inlier = inlier_limit(s);
-  round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, kMotionGate);
-  round_of_alignment(s, share_of_points(s, 0.25), kMotionGate, 2 * inlier);
-  round_of_alignment(s, share_of_points(s, 0.5), 3 * inlier, inlier);
-  for (int i = 0; i < 2; ++i) round_of_alignment(s, share_of_points(s, 1.0), 3 * inlier, inlier / 2);
+  const SearchWidths widths = {{{{share_of_points(s, 0.25), kMotionGate}, kMotionGate},
+                                {{share_of_points(s, 0.25), kMotionGate}, 2 * inlier},
+                                {{share_of_points(s, 0.5), 3 * inlier}, inlier},
+                                {{share_of_points(s, 1.0), 3 * inlier}, inlier / 2}}};
+  const double sigma = s.surface.sigma(depth_of(s.regions[0].pose, s.tables.centre)) / kUnitsPerMetre;
+  Narrowing narrowing(widths, sigma, s.regions);
+  for (int round = 0; round < kMostRounds && !narrowing.at_rest(); ++round) {
+    AlignSettings settings;
+    settings.widest = narrowing.widest();
+    narrowing.go_on(round_of_alignment(s, narrowing.reaches(), settings));
+  }
   hold_steady(s.tables, s.surface, s.points.frames, s.regions);
   for (TrackedRegion& region : s.regions)
     if (region.alive) region.motion = region.pose * region.last_pose.inverse();
@@ -208,7 +214,8 @@ bool acquire(TrackerState& s, const DepthFrame& frame, const RigidTransform& pos
   settings.prior_translation = 0.04;
   std::int32_t gate = kReach;
   for (int round = 0; round < 10; ++round) {
-    round_of_alignment(s, share_of_points(s, 0.5), gate, gate, settings);
+    settings.widest = for_every_region(gate);
+    (void)round_of_alignment(s, for_every_region(SearchReach{share_of_points(s, 0.5), gate}), settings);
     gate = std::max(gate * 3 / 4, 2 * inlier_limit(s));
   }
   base.motion = RigidTransform();

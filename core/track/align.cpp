@@ -52,8 +52,9 @@ void add_joint(const Joint& joint, const RigidTransform& pose, const Vector3& ce
 
 }  // namespace
 
-void align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
-           const PointState& points, RegionSet& regions) noexcept {
+AlignSteps align(const Surface& surface, const AlignSettings& settings, const Joints& joints,
+                 const PointState& points, RegionSet& regions) noexcept {
+  AlignSteps steps = for_every_region(-1.0);
   std::array<ResidualSpread, limits::kMaxRegions> spreads{};
   for (const Correspondence& c : points.correspondences.first(points.correspondence_count))
     spreads[static_cast<std::size_t>(c.region)].add(c.point, c.residual);
@@ -69,7 +70,7 @@ void align(const Surface& surface, const AlignSettings& settings, const Joints& 
     // never narrower than Tukey's width at what smoothing leaves of σ, a third
     const std::int32_t narrowest = noise * 8 / 5;
     const std::int32_t limit =
-        std::clamp((region.scale * 300) >> 6, narrowest, std::max(settings.widest, narrowest)) * 16;
+        std::clamp((region.scale * 300) >> 6, narrowest, std::max(settings.widest[k], narrowest)) * 16;
 
     const PlaneMoments moments =
         region_moments(points, static_cast<std::int8_t>(k), centre, limit, settings.robust);
@@ -95,7 +96,10 @@ void align(const Surface& surface, const AlignSettings& settings, const Joints& 
     region.pose.rotation = orthonormalised(region.pose.rotation);
     region.rms = std::sqrt(static_cast<double>(moments.square) / static_cast<double>(moments.weight)) *
                  kResidualMetres;
+    steps[k] = std::sqrt(x.tail<3>().squaredNorm() +
+                         settings.half_radius * settings.half_radius * x.head<3>().squaredNorm());
   }
+  return steps;
 }
 
 }  // namespace pliant

@@ -11,15 +11,16 @@ namespace pliant {
 
 namespace {
 
-/// What the kernel needs of regions and settings.
+/// What the kernel needs of regions, by region.
 struct Plan {
   RegionPoses poses;
-  std::array<std::size_t, limits::kMaxRegions> sizes{};  // of the sampling, by region
-  std::size_t size = 0;                                  // the largest of them
-  std::int32_t gate = 0;                                 // 1/16 mm, at most kFarthestReading
+  std::array<std::size_t, limits::kMaxRegions> sizes{};   // of the sampling
+  std::array<std::int32_t, limits::kMaxRegions> gates{};  // 1/16 mm, at most kFarthestReading
+  std::size_t size = 0;                                   // the largest sampling
   PixelSpan spacing;
 
-  [[nodiscard]] AsideReach aside_at(const Projector& projector, std::int32_t z) const noexcept {
+  [[nodiscard]] AsideReach aside_at(const Projector& projector, std::int32_t gate,
+                                    std::int32_t z) const noexcept {
     return {gate, gate, std::max(1, projector.pixels(gate, z) / kLooksAside), spacing};
   }
 };
@@ -40,24 +41,26 @@ Correspondence correspondence(const IntPoint& p, const IntPoint& n, std::size_t 
 inline bool find_correspondence(const Surface& surface, const Projector& projector, const Plan& plan,
                                 std::size_t i, std::size_t region, const IntPoint& p, const IntPoint& n,
                                 Side side, Correspondence& found) noexcept {
+  const std::int32_t gate = plan.gates[region];
   if (side == Side::rim) {
     std::int32_t distance = 0;
-    if (!find_contour(surface, projector, {plan.gate, plan.gate}, p, n, distance)) return false;
+    if (!find_contour(surface, projector, {gate, gate}, p, n, distance)) return false;
     found = correspondence(p, n, i, distance * 16, region);
     return true;
   }
   int u = 0, v = 0;
   if (!projector.project(p, u, v)) return false;
   const std::uint16_t z8 = surface.depth_at(u, v);
-  if (z8 == 0 || 2 * z8 - p.z > plan.gate) {
+  if (z8 == 0 || 2 * z8 - p.z > gate) {
     Aside aside;
-    if (region == 0 || !find_aside(surface, plan.aside_at(projector, p.z), u, v, p, n, aside)) return false;
+    if (region == 0 || !find_aside(surface, plan.aside_at(projector, gate, p.z), u, v, p, n, aside))
+      return false;
     found = correspondence(p, aside.direction, i, aside.distance * 16, region);
     return true;
   }
-  if (p.z - 2 * z8 > plan.gate) return false;
+  if (p.z - 2 * z8 > gate) return false;
   const std::int32_t residual = plane_distance(surface.vertex(u, v, z8), p, n);
-  if (std::abs(residual) > plan.gate * 16 || !surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n))
+  if (std::abs(residual) > gate * 16 || !surface.faces(u, v, Surface::normal_step(z8, plan.spacing), n))
     return false;
   found = correspondence(p, n, i, residual, region);
   return true;
@@ -104,19 +107,16 @@ inline bool find_correspondence(const Surface& surface, const Projector& project
 }  // namespace
 
 void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
-               const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept {
+               const RegionSet& regions, const SearchReaches& reaches, PointState& points) noexcept {
   Plan plan;
   plan.poses = fixed_poses(regions, model.centre);
-  const std::size_t wanted = std::min(settings.points, model.size);
   for (const std::int8_t home : points.home) ++plan.sizes[static_cast<std::size_t>(home)];
-  for (std::size_t& size : plan.sizes) {
-    if (size > kEnoughOfRegion)
-      size = std::min(wanted, model.size * kEnoughOfRegion / size);
-    else if (size > 0)
-      size = wanted;
-    plan.size = std::max(plan.size, size);
+  for (std::size_t k = 0; k < reaches.size(); ++k) {
+    plan.gates[k] = std::min(reaches[k].gate, kFarthestReading);
+    if (plan.sizes[k] > 0)
+      plan.sizes[k] = std::min({reaches[k].points, model.size, kEnoughOfRegion * model.size / plan.sizes[k]});
+    plan.size = std::max(plan.size, plan.sizes[k]);
   }
-  plan.gate = std::min(settings.gate, kFarthestReading);
   plan.spacing = surface.pixel_span(model.spacing / kUnitsPerMetre);
   points.correspondence_count = associate_points(model, surface, projector, plan, points);
 }

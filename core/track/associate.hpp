@@ -12,19 +12,22 @@ inline constexpr std::int32_t kCos75 = 4240;
 /// systematic errors, a tenth of σ.
 inline constexpr std::size_t kEnoughOfRegion = 1500;
 
-struct AssociateSettings {
-  std::size_t points = 0;  ///< the first so many model points are looked at: a uniform sampling;
-                           ///< of a region with more than kEnoughOfRegion points fewer, down to so many
+/// How a region's readings are looked for.
+struct SearchReach {
+  std::size_t points = 0;  ///< the region's are looked at of the first so many model points, a uniform
+                           ///< sampling: no more than kEnoughOfRegion; 0: none
   std::int32_t gate = 0;   ///< readings farther than this from the point are not taken, 1/16 mm
 };
 
+using SearchReaches = std::array<SearchReach, limits::kMaxRegions>;
+
 /// Fills `points.correspondences`, patch by patch. Where the camera sees through a point of a region that is
-/// not the base, the nearest reading beside it pulls: a small part slides along itself otherwise. The base has
-/// readings enough, and edges are noisier than surfaces. Points that face away (beyond 75° from the line of
-/// sight), but for those on the outline of such a region, which follow it (contour.hpp), and those that count
-/// as deformed, are left out; readings whose surface faces another way are not taken.
+/// not the base, the nearest reading beside it pulls: a small part slides along itself otherwise. The base
+/// has readings enough, and edges are noisier than surfaces. Points that face away (beyond 75° from the line
+/// of sight), but for those on the outline of such a region, which follow it (contour.hpp), and those that
+/// count as deformed, are left out; readings whose surface faces another way are not taken.
 void associate(const ModelTables& model, const Surface& surface, const Projector& projector,
-               const RegionSet& regions, const AssociateSettings& settings, PointState& points) noexcept;
+               const RegionSet& regions, const SearchReaches& reaches, PointState& points) noexcept;
 
 /// Signed distance of `reading` from `point` along the unit `normal` (Q14) in 1/256 mm.
 /// Overflow bound: |reading - point| < 2^16. So it is within a pixel of the point's ray and kFarthestReading

@@ -46,6 +46,14 @@ struct TrackedRegion {
 using RegionSet = std::array<TrackedRegion, limits::kMaxRegions>;
 using RegionPoses = std::array<FixedPose, limits::kMaxRegions>;
 
+/// The same value for every region.
+template <typename Value>
+[[nodiscard]] std::array<Value, limits::kMaxRegions> for_every_region(const Value& value) noexcept {
+  std::array<Value, limits::kMaxRegions> all;
+  all.fill(value);
+  return all;
+}
+
 [[nodiscard]] int count_alive(const RegionSet& regions) noexcept;
 /// Of those alive. `centre`: of the model.
 [[nodiscard]] RegionPoses fixed_poses(const RegionSet& regions, const Vector3& centre) noexcept;

@@ -25,11 +25,8 @@ void count_points(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene().tables.size));
 }
 
-AssociateSettings all_points() {
-  AssociateSettings settings;
-  settings.points = scene().tables.size;
-  settings.gate = 24 * kUnitsPerMillimetre;
-  return settings;
+SearchReaches all_points() {
+  return for_every_region(SearchReach{scene().tables.size, 24 * kUnitsPerMillimetre});
 }
 
 void associate_points(benchmark::State& state) {
@@ -42,10 +39,10 @@ void align_base(benchmark::State& state) {
   TrackScene& s = scene();
   associate(s.tables, s.surface, s.projector, s.regions, all_points(), s.points);
   AlignSettings settings;
-  settings.widest = 10 * kUnitsPerMillimetre;
+  settings.widest = for_every_region(10 * kUnitsPerMillimetre);
   for (auto _ : state) {
     s.regions[0].pose = usual_pose();
-    align(s.surface, settings, {}, s.points, s.regions);
+    benchmark::DoNotOptimize(align(s.surface, settings, {}, s.points, s.regions));
   }
   count_points(state);
 }

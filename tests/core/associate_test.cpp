@@ -25,10 +25,8 @@ class Associate : public synthetic::SharedScene<synthetic::bumpy_body> {
   }
 
   std::size_t run(std::int32_t gate, std::size_t most = SIZE_MAX) {
-    AssociateSettings settings;
-    settings.points = most;
-    settings.gate = gate;
-    associate(scene().tables, scene().surface, scene().projector, scene().regions, settings, scene().points);
+    associate(scene().tables, scene().surface, scene().projector, scene().regions,
+              for_every_region(SearchReach{most, gate}), scene().points);
     return scene().points.correspondence_count;
   }
 };
@@ -130,6 +128,17 @@ TEST_F(Associate, TakesEachPointUnderItsOwnRegion) {
   EXPECT_GT(with_outline, all);
   for (const Correspondence& c : scene().points.correspondences.first(with_outline))
     ASSERT_EQ(c.region, c.index < 600 ? 1 : 0);
+}
+
+TEST_F(Associate, LooksForNoRegionWithoutPoints) {
+  scene().regions[1] = scene().regions[0];
+  for (std::size_t i = 0; i < scene().tables.size; i += 2) scene().points.home[i] = 1;
+  SearchReaches reaches = for_every_region(SearchReach{SIZE_MAX, 20 * kUnitsPerMillimetre});
+  reaches[0].points = 0;
+  associate(scene().tables, scene().surface, scene().projector, scene().regions, reaches, scene().points);
+  const std::size_t count = scene().points.correspondence_count;
+  EXPECT_GT(count, 100U);
+  for (const Correspondence& c : scene().points.correspondences.first(count)) ASSERT_EQ(c.region, 1);
 }
 
 TEST_F(Associate, FindsNothingInAnEmptyPictureOrOutside) {

@@ -140,15 +140,13 @@ RigidTransform follow(TrackScene& scene, const RigidTransform& truth, const Rigi
     part.last_pose = part.pose;
     part.pose = part.predicted = part.pose * step;
     for (int round = 0; round < 4; ++round) {
-      AssociateSettings associate_settings;
-      associate_settings.points = scene.tables.size;
-      associate_settings.gate = 20 * kUnitsPerMillimetre;
-      associate(scene.tables, scene.surface, scene.projector, scene.regions, associate_settings,
-                scene.points);
+      constexpr std::int32_t kGate = 20 * kUnitsPerMillimetre;
+      associate(scene.tables, scene.surface, scene.projector, scene.regions,
+                for_every_region(SearchReach{scene.tables.size, kGate}), scene.points);
       AlignSettings align_settings;
-      align_settings.widest = associate_settings.gate;
+      align_settings.widest = for_every_region(kGate);
       const Joints joints = find_joints(scene.patches, *scene.warp, scene.regions);
-      align(scene.surface, align_settings, tied ? joints : Joints{}, scene.points, scene.regions);
+      (void)align(scene.surface, align_settings, tied ? joints : Joints{}, scene.points, scene.regions);
     }
   }
   return part.pose;

@@ -60,14 +60,11 @@ class TrackScene {
     for (int i = 0; i < 2; ++i) align_once(3 * limit, limit / 2);
   }
   void align_once(std::int32_t gate, std::int32_t widest, bool robust = true) {
-    AssociateSettings associate_settings;
-    associate_settings.points = tables.size;
-    associate_settings.gate = gate;
-    associate(tables, surface, projector, regions, associate_settings, points);
+    associate(tables, surface, projector, regions, for_every_region(SearchReach{tables.size, gate}), points);
     AlignSettings align_settings;
-    align_settings.widest = widest;
+    align_settings.widest = for_every_region(widest);
     align_settings.robust = robust;
-    align(surface, align_settings, {}, points, regions);
+    (void)align(surface, align_settings, {}, points, regions);
   }
   static WarpSettings warp_settings() {
     WarpSettings settings;
