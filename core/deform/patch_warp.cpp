@@ -1,6 +1,7 @@
 #include "core/deform/patch_warp.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/deform/body_tie.hpp"
 #include "core/deform/patch_readings.hpp"
@@ -179,15 +180,17 @@ ChosenPatches moving_patches(const PatchTables& patches, const PatchWarp& warp,
 /// that is left in a patch after a dozen smoothed readings is twice that.
 constexpr double kNothing = 0.05;
 
-/// A patch that a round moved by less than this share of the noise has come to rest for this frame.
-constexpr double kAtRest = 0.15;
+/// A patch that a round moved by less than this share of the noise, what is left of it in a pose, has come to
+/// rest for this frame.
+constexpr double kAtRest = kNoiseOfPose;
 
 int aside_step(const Projector& projector, const ReadingGates& gates, std::int32_t z) noexcept {
   return std::max(1, projector.pixels(gates.inward, z) / kLooksAside);
 }
 
 /// One balance of readings, anchors and springs of the patches that still move; those that came to rest do
-/// so no more. False when there is no balance.
+/// so no more. No patch turns by more than kFreeTurn or moves farther than readings lie off it: for what is
+/// far out of balance, the equations, which are linear, do not hold that far. False when there is no balance.
 bool balance(const PatchLook& look, const RegionSet& regions, ChosenPatches& moving, const Material& material,
              double limit, int iterations, PatchWarp& warp) noexcept {
   const std::size_t count = look.patches.count;
@@ -205,13 +208,15 @@ bool balance(const PatchLook& look, const RegionSet& regions, ChosenPatches& mov
   }
   add_borders(look.patches, material, warp);
   add_ties(look.patches, material, warp);
-  const double still = kNothing * material.noise;
+  const double still = kNothing * material.noise, farthest = look.gates.inward / kUnitsPerMetre;
   if (!warp.system.solve(iterations, 6 * still * still * static_cast<double>(moving_count))) return false;
   for (std::size_t p = 0; p < count; ++p) {
     const Vector6& x = warp.system.motion(p);
     if (!moving[p]) continue;
-    const bool sound = x.squaredNorm() < 1.0;  // false for not-a-number
-    if (sound) warp.pose[p] = motion_about(x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
+    const double turn = x.head<3>().norm(), shift = x.tail<3>().norm();
+    const bool sound = std::isfinite(turn + shift);
+    const double share = std::min({1.0, kFreeTurn / turn, farthest / shift});
+    if (sound) warp.pose[p] = motion_about(share * x, warp.pose[p] * look.patches.centres[p]) * warp.pose[p];
     const double radius = 0.5 * look.patches.radius, rest = kAtRest * material.noise;
     moving[p] =
         sound && x.tail<3>().squaredNorm() + x.head<3>().squaredNorm() * radius * radius > rest * rest;

@@ -129,6 +129,29 @@ TEST_F(Warp, KeepsTheShapeWithoutReadings) {
   for (std::size_t p = 0; p < scene().patches.count; ++p) EXPECT_EQ(scene().warp->seen[p], 0);
 }
 
+TEST_F(Warp, WhatIsFarOutOfBalanceDragsNothingAlong) {
+  // Patches that nobody sees, as a part that was lost behind the body leaves them.
+  see(0);
+  scene().warp_now();
+  std::vector<std::size_t> flung;
+  for (std::size_t p = 0; p < scene().patches.count; ++p)
+    if (scene().warp->seen[p] == 0 && flung.size() < 5) flung.push_back(p);
+  ASSERT_EQ(flung.size(), 5U);
+  const auto place = [](std::size_t p) { return usual_pose() * scene().patches.centres[p]; };
+  const auto now = [](std::size_t p) { return scene().warp->pose[p] * scene().patches.centres[p]; };
+  for (const std::size_t p : flung) {
+    const Matrix3 turned = synthetic::turn({1, 1, 0}, 1.8) * usual_pose().rotation;
+    scene().warp->pose[p] = {turned,
+                             place(p) + Vector3(0.1, -0.12, 0.1) - turned * scene().patches.centres[p]};
+  }
+  for (int frame = 0; frame < 30; ++frame) {
+    scene().warp_now();
+    const std::vector<double> seen = errors(0, false);
+    ASSERT_LT(seen[seen.size() * 95 / 100], 0.005) << frame;
+  }
+  for (const std::size_t p : flung) EXPECT_LT((now(p) - place(p)).norm(), 0.01) << p;
+}
+
 TEST_F(Warp, MovesAlongWithItsRegion) {
   see(0);
   scene().warp_now();
