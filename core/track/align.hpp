@@ -17,7 +17,7 @@ struct AlignSettings {
   bool robust = true;               ///< Tukey weights; else equal ones up to their limit
 };
 
-/// How far every region was moved, metres; negative where readings were too few.
+/// How far every region was moved, metres; negative where none was found: too few readings, or no sound step.
 using AlignSteps = std::array<double, limits::kMaxRegions>;
 
 /// One Gauss–Newton step for every region with correspondences: Tukey weights at a scale from the median

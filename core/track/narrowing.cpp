@@ -2,15 +2,17 @@
 
 #include <algorithm>
 
+#include "core/track/steady.hpp"
+
 namespace pliant {
 
 namespace {
 
-/// Half of the noise that is left in a pose (kNoiseOfPose): what a round moves by less was where it was
-/// expected.
-constexpr double kExpected = 0.25;
+/// Half of the noise that is left in a pose: what a round moves by less was where it was expected. A share of
+/// σ, as the next.
+constexpr double kExpected = kNoiseOfPose / 2;
 /// Each round moves a region by about half of what the one before did: what moves by less than a tenth of σ
-/// would, in all further rounds, move by no more than that.
+/// would move, in all further rounds, by no more than that.
 constexpr double kNothingMore = 0.1;
 
 }  // namespace

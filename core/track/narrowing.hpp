@@ -15,7 +15,8 @@ struct SearchWidth {
 /// From the first round's to the last one's.
 using SearchWidths = std::array<SearchWidth, 4>;
 
-/// Most rounds in a frame: a region that still moves at the last width is looked for there once more.
+/// Most rounds in a frame: a region that still moves at the last width is looked for there in what is left of
+/// them.
 inline constexpr int kMostRounds = static_cast<int>(SearchWidths().size()) + 1;
 
 /// Which width every region has come to. Each round takes a region to the next; one that a round barely moved
@@ -23,7 +24,7 @@ inline constexpr int kMostRounds = static_cast<int>(SearchWidths().size()) + 1;
 /// looked for no more.
 class Narrowing {
  public:
-  /// `sigma`: of a reading at the object, metres. The regions that are alive.
+  /// `widths` outlive this. `sigma`: of a reading at the object, metres. The regions that are alive.
   Narrowing(const SearchWidths& widths, double sigma, const RegionSet& regions) noexcept;
 
   [[nodiscard]] bool at_rest() const noexcept;

@@ -85,9 +85,10 @@ TEST_F(Align, LeavesARegionWithTooFewReadingsAlone) {
   scene().see_body(usual_pose());
   const RigidTransform off = moved(usual_pose(), 0.01, 0.05, 0);
   scene().place(off);
+  // fewer than kFewestCorrespondences of 40 points face the camera
   associate(scene().tables, scene().surface, scene().projector, scene().regions,
-            for_every_region(SearchReach{SIZE_MAX, 40 * kUnitsPerMillimetre}), scene().points);
-  scene().points.correspondence_count = kFewestCorrespondences - 1;
+            for_every_region(SearchReach{40, 40 * kUnitsPerMillimetre}), scene().points);
+  ASSERT_LT(scene().points.correspondence_count, kFewestCorrespondences);
   EXPECT_LT(align(scene().surface, {}, {}, scene().points, scene().regions)[0], 0);
   EXPECT_EQ((scene().regions[0].pose.rotation - off.rotation).norm(), 0.0);
   EXPECT_EQ((scene().regions[0].pose.translation - off.translation).norm(), 0.0);
